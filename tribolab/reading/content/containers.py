@@ -1,4 +1,4 @@
-"""Runs in files that hold columns by name: HDF5, MAT, TDMS, Parquet, workbooks, records."""
+"""Reading of runs from files with named columns: HDF5, MAT, TDMS, Parquet, workbooks, records."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name
 from tribolab.units.conversion import conversion
 
-_NAMED = 8  # tables that an attribute names
+_NAMED = 8  # most tables named in an attribute
 
 
 def read_columns(path: Path, dialect: Dialect) -> Content:
-    """Read the columns of a file that names them; each table of several is a piece.
+    """Read the columns of a file that names them; each of several tables is a piece.
 
     Parameters
     ----------
@@ -37,8 +37,8 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
     Raises
     ------
     ReadError
-        If the file is damaged, a table or column is missing or holds no numbers, or columns
-        differ in length.
+        If the file is damaged, a table or column is missing or not numeric, or columns differ in
+        length.
     """
     file = _opened(path, dialect)
     tables = tables_of(file, dialect)
@@ -81,19 +81,19 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
 
 
 def read_table(path: Path, dialect: Dialect, name: str) -> dict[str, np.ndarray]:
-    """Read those columns of one more table of a file that it holds, in SI.
+    """Read the available columns of another table of a file, in SI.
 
     Parameters
     ----------
     path, dialect
         As for `read_columns`.
     name
-        Of the table.
+        Name of the table.
 
     Raises
     ------
     ReadError
-        If there is no such table.
+        If the table does not exist.
     """
     tables = [table for table in _opened(path, dialect).tables if table.name == name]
     if not tables:
@@ -108,7 +108,7 @@ def _opened(path: Path, dialect: Dialect) -> RawFile:
         return open_as(path, dialect)
     except (ReadError, ImportError):
         raise
-    except Exception as error:  # each of these libraries has its own ways to say "damaged"
+    except Exception as error:  # each of these libraries reports damage differently
         form = dialect.text.container or dialect.format
         what = f"this {form} file cannot be read: {shown(str(error), 200)}"
         raise ReadError(what, where=path) from error
@@ -157,12 +157,12 @@ def _scaled(path: Path, signal: ReadColumn, values: np.ndarray) -> np.ndarray:
     if values.dtype.kind not in "fiub":
         odd = f": '{shown(str(values[0]), 40)}' is not one" if values.size else ""
         raise ReadError(f"column '{shown(signal.label)}' holds no numbers{odd}", where=path)
-    with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may have any value
         return np.asarray(values, dtype=float) * signal.scale + signal.offset
 
 
 def seconds_of(values: np.ndarray) -> np.ndarray:
-    """Return moments as seconds since 1970, and durations as seconds; NaN where there is none.
+    """Return moments as seconds since 1970, and durations as seconds; NaT becomes NaN.
 
     >>> seconds_of(np.array(["1970-01-01T00:01:00.5", "NaT"], dtype="datetime64[ms]")).tolist()
     [60.5, nan]
@@ -175,7 +175,7 @@ def seconds_of(values: np.ndarray) -> np.ndarray:
 def _marked_steps(
     path: Path, file: RawFile, time: np.ndarray, marks: Marks
 ) -> tuple[np.ndarray, dict[str, str]]:
-    """Step k lasts from mark k to mark k + 1; before the first mark it is 0."""
+    """Return the step number over time: step k lasts from mark k to k + 1; 0 before mark 1."""
     table = next((table for table in file.tables if table.name == marks.group), None)
     clocks: list[RawColumn] = [] if table is None else list(table.columns)
     clocks = [column for column in clocks if split_name(column.label)[0] == marks.time]

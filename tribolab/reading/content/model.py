@@ -1,4 +1,4 @@
-"""Pieces of a run as they lie in one file, and what is said of the file beside them."""
+"""Pieces of a run in one file, and information on the file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 
 class Piece(NamedTuple):
-    """One table: arrays in SI by quantity, and what the text before it says."""
+    """One table: arrays in SI by quantity, and the text before it."""
 
     columns: dict[str, np.ndarray]
     step: int | None = None
@@ -20,15 +20,15 @@ class Piece(NamedTuple):
 
 
 class Content(NamedTuple):
-    """What one file holds."""
+    """Content of one file."""
 
     path: Path
     sha256: str
     pieces: list[Piece]
     labels: Mapping[str, str]
     not_used: tuple[str, ...]
-    left_out: Mapping[str, int] = {}  # rows that were not taken over, by reason
+    left_out: Mapping[str, int] = {}  # rows left out, by reason
     notes: Mapping[str, str] = {}
-    symbols: Mapping[str, str] = {}  # SI units of columns that only formulas use
-    scales: Mapping[str, tuple[float, float]] = {}  # what made SI of a column: scale and offset
-    foot: str = ""  # the text below the table, of a file that begins with it
+    symbols: Mapping[str, str] = {}  # SI units of columns used only in formulas
+    scales: Mapping[str, tuple[float, float]] = {}  # conversion to SI by column: scale and offset
+    foot: str = ""  # text below the table of a file that begins with the table

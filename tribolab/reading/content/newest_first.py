@@ -1,4 +1,4 @@
-"""Tables whose newest row comes first, as programs write them that show the latest on top."""
+"""Tables in reverse order of time, as written by programs that show the latest row first."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 
 from tribolab.reading.content.model import Content
 
-_FEW = 8  # rows that show an order
+_FEW = 8  # rows needed to recognise the order
 
 
 def is_newest_first(time: np.ndarray) -> bool:
-    """Whether time falls from each row to the next.
+    """Whether time decreases from each row to the next.
 
     >>> is_newest_first(np.arange(9.0)[::-1]), is_newest_first(np.arange(9.0))
     (True, False)
@@ -21,7 +21,7 @@ def is_newest_first(time: np.ndarray) -> bool:
 
 
 def oldest_first(content: Content) -> Content:
-    """Return a file's one table with its oldest row first, and say so if it was turned round."""
+    """Return a file with its single table in order of time, with a note if it was reversed."""
     if len(content.pieces) != 1 or not is_newest_first(content.pieces[0].columns["time"]):
         return content
     [piece] = content.pieces

@@ -1,4 +1,4 @@
-"""Pieces of a run as they lie in one file: a table at each of the instrument's steps, in SI."""
+"""Reading of one raw file: one table for each of the instrument's steps, in SI."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from tribolab.reading.raw.missing_marks import beyond_range, measurable, take_ma
 from tribolab.reading.text.first_bytes import File, fits_format, peek
 
 _T = TypeVar("_T")
-_UNCLEAR = 0.5  # of a load's largest number, that of the other sign
-_PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
-_OF_NAMES = 3  # lines of names and units with which a table begins, at most
+_UNCLEAR = 0.5  # largest ratio of values of the other sign in a load of known sign
+_PLACES = ("x", "y")  # coordinates of a scan, checked by `scan_grid`
+_OF_NAMES = 3  # most lines of names and units at the start of a table
 
 
 def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
@@ -41,18 +41,18 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
     Returns
     -------
     Content
-        The pieces; the label and unit that each quantity has in the file; what is not used.
+        The pieces, with label and unit of each quantity in the file, and the unused columns.
 
     Raises
     ------
     ReadError
-        If the file is not what the dialect says.
+        If the file does not match the dialect.
     """
     if isinstance(dialect, PythonReader):
         # imported late for a quick start
         from tribolab.reading.content.containers import read_columns
 
-        return _checked(read_columns(path, dialect), dialect)
+        return _clean(read_columns(path, dialect), dialect)
     file = peek(path, binary=dialect.format == "binary")
     if not fits_format(file.format, dialect.format):
         raise ReadError(
@@ -67,9 +67,9 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
         content = read_columns(file.path, dialect)
     else:
         content = _read_text(file, dialect, size)
-    if file.path != path:  # it was compressed
+    if file.path != path:  # it was decompressed
         content = content._replace(path=path, sha256=sha256_of_file(path))
-    return _checked(content, dialect)
+    return _clean(content, dialect)
 
 
 def _read_text(file: File, dialect: Dialect, size: int) -> Content:
@@ -122,9 +122,9 @@ def _no_value(values: np.ndarray) -> bool:
     return not anywhere(lambda part: ~np.isnan(part), values)
 
 
-def _checked(content: Content, dialect: Dialect) -> Content:
-    """Leave out optional columns without a value; a wanted one without a value is an error."""
-    content = _pressed(_chosen(_possible(_without_marks(content))), dialect)
+def _clean(content: Content, dialect: Dialect) -> Content:
+    """Remove optional columns without values; raise if another column has none."""
+    content = _orient_load(_chosen(_remove_impossible(_remove_sentinels(content))), dialect)
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
@@ -150,8 +150,8 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     return content._replace(pieces=pieces, not_used=content.not_used + without)
 
 
-def _pressed(content: Content, dialect: Dialect) -> Content:
-    """Turn a load whose sign is not known so that its largest numbers are positive."""
+def _orient_load(content: Content, dialect: Dialect) -> Content:
+    """Make a load of unknown sign positive where it is largest."""
     if not any(column.sign == "pressed" for column in dialect.column):
         return content
     parts = [p.columns["normal_force"] for p in content.pieces if "normal_force" in p.columns]
@@ -176,7 +176,7 @@ def _pressed(content: Content, dialect: Dialect) -> Content:
 
 
 def _chosen(content: Content) -> Content:
-    """Of columns that may hold one quantity keep the first that is filled."""
+    """Of several columns for one quantity, keep the first that is filled."""
     keys = dict.fromkeys(key for piece in content.pieces for key in piece.columns)
     parts = {
         key: [piece.columns[key] for piece in content.pieces if key in piece.columns]
@@ -193,15 +193,15 @@ def _chosen(content: Content) -> Content:
 
 
 def _named(columns: Mapping[str, _T], chosen: Mapping[str, str]) -> dict[str, _T]:
-    """Give the chosen columns their quantities' names, and leave out the others."""
+    """Name the chosen columns after their quantities, and leave out the others."""
     kept = {
         key: value for key, value in columns.items() if chosen.get(key.split(AGAIN)[0], key) == key
     }
     return {key.split(AGAIN)[0]: value for key, value in kept.items()}
 
 
-def _without_marks(content: Content) -> Content:
-    """Take numbers that stand for no value for missing, and say which they were."""
+def _remove_sentinels(content: Content) -> Content:
+    """Replace sentinels by NaN, and note them."""
     told = []
     for name in dict.fromkeys(name for piece in content.pieces for name in piece.columns):
         if name in ("time", *_PLACES):
@@ -215,8 +215,8 @@ def _without_marks(content: Content) -> Content:
     return content._replace(notes={**content.notes, "taken_for_missing": "; ".join(told)})
 
 
-def _possible(content: Content) -> Content:
-    """Take numbers that nothing measured can have for missing, and say how many they were."""
+def _remove_impossible(content: Content) -> Content:
+    """Replace physically impossible numbers by NaN, and note their count."""
     places: dict[str, int] = {}
     pieces = []
     for piece in content.pieces:
@@ -224,8 +224,8 @@ def _possible(content: Content) -> Content:
         for name, values in columns.items():
             if name in _PLACES or values.dtype.kind != "f":
                 continue
-            if name == "time":  # whoever sets the clock refuses it
-                columns[name] = _without_beyond(values)
+            if name == "time":  # refused later, when the clock is set
+                columns[name] = _limit_times(values)
                 continue
             columns[name] = measurable(values)
             if columns[name] is values:
@@ -240,8 +240,8 @@ def _possible(content: Content) -> Content:
     return content._replace(notes={**content.notes, "numbers_beyond_range": told})
 
 
-def _without_beyond(values: np.ndarray) -> np.ndarray:
-    """Return times with those that no clock can show as infinite."""
+def _limit_times(values: np.ndarray) -> np.ndarray:
+    """Replace times beyond the range of any clock by infinity."""
     if not anywhere(beyond_range, values):
         return values
     return np.where(beyond_range(values), np.inf, values)

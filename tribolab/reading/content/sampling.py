@@ -1,4 +1,4 @@
-"""The distance of samples [s] where no column holds time: a rate or an interval that is stated."""
+"""Sampling interval [s] of a table without a time column: from a stated rate or interval."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ _COMMA = re.compile(r"\d+,\d+(?:[eE][-+]?\d+)?")
 
 
 def stated_interval(content: Content, dialect: Dialect, piece: Piece) -> float:
-    """Return the time [s] from a sample to the next; a second where nothing is stated.
+    """Return the sampling interval [s]; 1 s if nothing is stated.
 
     Parameters
     ----------
     content
-        The file: in the text before its table the rate or the interval may stand.
+        The file, whose preamble may state the rate or interval.
     dialect
-        Says which of both, or where.
+        The dialect, which states the value or its place.
     piece
-        One of its tables: what stands before it goes before what the file says.
+        One of its tables: the text before it takes precedence over the preamble.
 
     Raises
     ------
     ReadError
-        If it does not stand there, or is no rate and no interval.
+        If it is missing, or is neither a rate nor an interval.
     """
     stated = _stated(content, dialect, piece)
     return sampling_interval(stated, _where(content, dialect)) if stated else 1.0
 
 
 def stated_pace(content: Content, dialect: Dialect) -> float:
-    """Return the speed [m/s] at which a position goes on, as `stated_interval` does.
+    """Return the stated speed [m/s] at which a position increases.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def stated_pace(content: Content, dialect: Dialect) -> float:
     Raises
     ------
     ReadError
-        If it does not stand there, or is no speed.
+        If it is missing, or is not a speed.
     """
     return positive(_stated(content, dialect, content.pieces[0]), "m/s", _where(content, dialect))
 
@@ -57,7 +57,7 @@ def _where(content: Content, dialect: Dialect) -> str:
 
 
 def _stated(content: Content, dialect: Dialect, piece: Piece) -> str:
-    """Return what the dialect or the file states, with its unit; "" if neither does."""
+    """Return the rate or interval of the dialect or the file, with its unit; "" without one."""
     rule = dialect.time
     if rule.rate or not rule.rate_pattern:
         return rule.rate or ""

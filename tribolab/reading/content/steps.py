@@ -1,4 +1,4 @@
-"""What the text before a step says of it."""
+"""Information on a step from the text before it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tribolab.reading.text.bounded_patterns import guarded
 
 
 def last_match(pattern: str, text: str) -> str | None:
-    """Group 1 of a pattern's last match, so that a step's own text goes before earlier steps'."""
+    """Return group 1 of a pattern's last match: a step's own text takes precedence."""
     return guarded(pattern).last(text)
 
 
 def started(text: str, path: Path, dialect: Dialect) -> dt.datetime | None:
-    """Moment at which a step starts, if the text before it says so."""
+    """Return the start time of a step, if the text before it states one."""
     time = dialect.time
     if time.start_pattern is None or time.start_format is None:
         return None

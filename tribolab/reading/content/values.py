@@ -1,4 +1,4 @@
-"""Single values outside the table: in the text about it, in a step's, in the file's name."""
+"""Single values outside the table: in the preamble, before a step, or in the file name."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tribolab.reading.dialect.value_rule import Value
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.units.conversion import conversion, to_si
 
-# 21,5 above a table with decimal points; 1,200 may be a thousand and is asked about
+# 21,5 in the preamble of a table with decimal points; 1,200 is ambiguous and is asked about
 _OWN_COMMA = re.compile(r"[-+]?(?:\d+,\d{1,2}|\d+,\d{4,}|0,\d+)(?:[eE][-+]?\d+)?")
 
 _OF_NAME = re.compile(r"(?<=\d)[,pP_](?=\d)")
 
 
 def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
-    """Attributes from the preamble and the file's name; the unit is in an attribute's name.
+    """Return attributes from the preamble and the file name, with their unit in the name.
 
     Raises
     ------
     ReadError
-        If a value that has a unit is no number.
+        If a value with a unit is not a number.
     """
     attrs: dict[str, str | float] = {}
     for value in dialect.value:
@@ -39,15 +39,15 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
         if not text_found and value.source == "preamble":
             text_found = _first_match(value.pattern, content.foot)
         if text_found:
-            _agrees(text_found, value, content, dialect)
+            _check_later_tables(text_found, value, content, dialect)
             attrs[value.attribute] = converted(text_found, value, content, dialect)
     return attrs
 
 
 def add_assumed(attrs: Json, dialect: Dialect) -> list[Value]:
-    """Add the dialect's values where neither the table nor the text beside it says them.
+    """Add default values of the dialect that the file does not state.
 
-    Returns which these are, for `tell_assumed`.
+    Returns the added values, for `tell_assumed`.
     """
     lost = [v for v in dialect.value if v.default is not None and v.attribute not in attrs]
     for value in lost:
@@ -56,7 +56,7 @@ def add_assumed(attrs: Json, dialect: Dialect) -> list[Value]:
 
 
 def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
-    """Say in ``assumed`` which of the values that were added something follows from."""
+    """Record in ``assumed`` the default values on which results depend."""
     used = set(dialect.speed.values_named.values())
     for formula in attrs.get("derived", {}).values():
         used |= names_in(parse_formula(formula))
@@ -64,8 +64,8 @@ def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
         attrs["assumed"] = "; ".join(told)
 
 
-def _agrees(text: str, value: Value, content: Content, dialect: Dialect) -> None:
-    """Refuse a value that is reckoned with, where the text before a later table says another."""
+def _check_later_tables(text: str, value: Value, content: Content, dialect: Dialect) -> None:
+    """Raise if the text before a later table states another value of an input."""
     reckoned = value.name in dialect.values_reckoned_with
     if value.source != "preamble" or value.pattern is None or not reckoned:
         return
@@ -82,9 +82,9 @@ def _agrees(text: str, value: Value, content: Content, dialect: Dialect) -> None
 def step_values(
     contents: list[Content], dialect: Dialect
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Values that each step has: numbers as variables along time, texts as one attribute each.
+    """Return the values of each step: numbers as variables over time, texts as attributes.
 
-    A number whose name is no quantity is for formulas only.
+    A number whose name is not a quantity is used in formulas only.
     """
     variables: dict[str, np.ndarray] = {}
     attrs: dict[str, str] = {}
@@ -108,7 +108,7 @@ def step_values(
 
 
 def _number(text: str, decimal: str) -> float:
-    """Return a number in the table's spelling, or with a decimal comma of its own."""
+    """Return a number in the table's notation, or with its own decimal comma."""
     if decimal == "." and _OWN_COMMA.fullmatch(text):
         decimal = ","
     return float(text.replace(decimal, "."))
@@ -119,12 +119,12 @@ def _first_match(pattern: str, text: str) -> str | None:
 
 
 def converted(text: str, value: Value, content: Content, dialect: Dialect) -> str | float:
-    """Return the number that a text is, in the SI unit of its value; text without a unit as it is.
+    """Return the number in a text, in the SI unit of its value; text without a unit is unchanged.
 
     Parameters
     ----------
     text
-        As it stands in the file.
+        Text in the file.
     value
         The dialect's rule.
     content, dialect
@@ -133,13 +133,13 @@ def converted(text: str, value: Value, content: Content, dialect: Dialect) -> st
     Raises
     ------
     ReadError
-        If a value that has a unit is no number.
+        If a value with a unit is not a number.
     """
     if value.unit is None:
         return text
     spelt = text.rstrip(".,")
     try:
-        if value.source == "file name":  # "r12p5mm", "R12_5": names of files avoid points
+        if value.source == "file name":  # "r12p5mm", "R12_5": file names avoid decimal points
             number = float(_OF_NAME.sub(".", spelt))
         else:
             number = _number(spelt, dialect.text.decimal)

@@ -1,1 +1,1 @@
-"""An instrument described as data: what its files look like and what their columns hold."""
+"""Dialects: description of an instrument's raw files and their columns as data."""

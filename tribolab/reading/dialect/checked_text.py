@@ -1,4 +1,4 @@
-"""Texts of a dialect that are checked as they are read, and the base of what it says."""
+"""Validated texts of a dialect, and the base class of its rules."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ _SYNONYMS = {
 
 
 def _is_quantity(name: str) -> object:
-    """Refuse what is no quantity, and say how a column of it makes one."""
+    """Raise if a name is not a quantity; the message states how to derive one."""
     try:
         return quantity(name)
     except TribolabError as error:
@@ -74,8 +74,8 @@ def _is_quantity(name: str) -> object:
         raise TribolabError(f"no quantity is called '{shown(name)}': say {rule}") from error
 
 
-def _told_by(check: Callable[[str], object]) -> AfterValidator:
-    """Make what a check of another room raises a mistake in the dialect."""
+def _validator(check: Callable[[str], object]) -> AfterValidator:
+    """Return a validator that reports errors of a check as errors of the dialect."""
 
     def validated(text: str) -> str:
         try:
@@ -91,21 +91,21 @@ _BINARY_TYPE = re.compile(r"[<>|=]?[fiu][1248]")
 Pattern = Annotated[str, AfterValidator(_is_pattern)]
 Encoding = Annotated[str, AfterValidator(_is_encoding)]
 BinaryField = Annotated[str, AfterValidator(_is_field)]
-QuantityName = Annotated[str, _told_by(_is_quantity)]
-Formula = Annotated[str, _told_by(parse_formula)]
-ZeroText = Annotated[str, _told_by(parse_zero)]
+QuantityName = Annotated[str, _validator(_is_quantity)]
+Formula = Annotated[str, _validator(parse_formula)]
+ZeroText = Annotated[str, _validator(parse_zero)]
 Symbol = Annotated[str, Field(pattern=r"^[A-Za-z_]\w*$")]
 Sign = Literal[1, -1]
 
 
 class Strict(NoSwitches):
-    """Frozen, and an unknown key is an error."""
+    """Base class of the rules: frozen, unknown keys are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
 
 
 def check_unit(unit: str, si_unit: str, bare: Counted | None = None) -> None:
-    """Refuse a unit that does not turn into another."""
+    """Raise if a unit cannot be converted to another."""
     try:
         conversion(unit, si_unit, bare)
     except TribolabError as error:

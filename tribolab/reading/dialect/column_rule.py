@@ -1,4 +1,4 @@
-"""What a dialect says of one column: which quantity it is, in which unit and with which zero."""
+"""Rule of a dialect for one column: quantity, unit, sign and zero."""
 
 from __future__ import annotations
 
@@ -92,26 +92,26 @@ class Column(Strict):
 
     @property
     def key(self) -> str:
-        """What the column is called here: its quantity, or its symbol."""
+        """Key of the column: its quantity, or its symbol."""
         return self.quantity or str(self.symbol)
 
     @property
     def bare(self) -> Counted | None:
-        """What a unit per time counts that does not say it."""
+        """Events counted by a unit per time that does not name them."""
         return quantity(self.quantity).bare if self.quantity else None
 
     def si_unit(self, unit: str | None) -> str:
-        """SI unit that numbers in a unit are turned into."""
+        """Return the SI unit to which numbers in a unit are converted."""
         if self.quantity:
             return quantity(self.quantity).unit
         if unit in (None, "", "1", "-", "%"):
             return "1"
-        turning = reciprocal(plain_unit(str(unit)))  # cycles stay cycles
+        turning = reciprocal(plain_unit(str(unit)))  # cycles remain cycles
         return _TURNING.get(turning.counts if turning else "") or base_unit(str(unit))
 
     @property
     def attributes(self) -> dict[str, float | bool]:
-        """What is stated of its zero and sign, as attributes of the run."""
+        """Return stated zero uncertainty and rectification, as attributes of the run."""
         attrs: dict[str, float | bool] = {}
         if self.zero_uncertainty is not None:
             unit = self.si_unit(None)

@@ -1,4 +1,4 @@
-"""Which column of a table is which quantity, and what turns its numbers into SI."""
+"""Assignment of a table's columns to quantities, with conversion to SI."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.units.conversion import conversion
 
-AGAIN = "~"  # between a quantity and the number of a further column that may hold it
+AGAIN = "~"  # separates a quantity and the number of a further column for it
 
 
 class ReadColumn(NamedTuple):
-    """A column that is read: its place (from 0), key; ``si = scale * x + offset``.
+    """Column to be read: place (from 0) and key; ``si = scale * x + offset``.
 
-    The key is its quantity or symbol; a further column for the same quantity has ``~2`` ... after
-    it, see `first_filled`.
+    The key is its quantity or symbol, with ``~2`` ... for a further column of the same quantity;
+    see `first_filled`.
     """
 
     place: int
@@ -40,14 +40,14 @@ def resolve(
     width: int,
     dialect: Dialect,
 ) -> tuple[list[ReadColumn], list[str]]:
-    """Find the columns that a dialect asks for.
+    """Find the columns of a dialect in a table.
 
     Parameters
     ----------
     where
         The file's name, for messages.
     names, units
-        What the header says; empty in a file without one.
+        Names and units in the header; empty without a header.
     width
         Number of cells in the first row of numbers.
     dialect
@@ -61,7 +61,7 @@ def resolve(
     Raises
     ------
     ReadError
-        If columns are missing or have no usable unit: all of them are told.
+        If columns are missing or have no usable unit; the message names all of them.
     """
     signals: list[ReadColumn] = []
     refused: list[ReadError] = []
@@ -91,18 +91,18 @@ def resolve(
 
 
 def symbols(signals: Sequence[ReadColumn], dialect: Dialect) -> dict[str, str]:
-    """Return the SI units of those columns that only formulas use."""
+    """Return the SI units of the columns used only in formulas."""
     own = {column.symbol for column in dialect.column if column.symbol}
     return {signal.quantity: signal.si_unit for signal in signals if signal.quantity in own}
 
 
 def scales_of(signals: Sequence[ReadColumn]) -> dict[str, tuple[float, float]]:
-    """Return what turns the numbers of each column into SI: a scale and an offset."""
+    """Return scale and offset of each column for the conversion to SI."""
     return {signal.quantity: (signal.scale, signal.offset) for signal in signals}
 
 
 def first_filled(columns: Mapping[str, Sequence[np.ndarray]]) -> dict[str, str]:
-    """Choose among columns that may hold one quantity the first that is filled.
+    """Choose the first filled one of several columns for a quantity.
 
     Parameters
     ----------
@@ -112,8 +112,8 @@ def first_filled(columns: Mapping[str, Sequence[np.ndarray]]) -> dict[str, str]:
     Returns
     -------
     dict
-        Key of the chosen column by quantity, of quantities with more than one. Filled is what
-        holds a number that is not zero; where none does, the first is taken.
+        Key of the chosen column by quantity, for quantities with several columns. A column is
+        filled if it has a number other than zero; if none is filled, the first is chosen.
     """
     keys: dict[str, list[str]] = {}
     for key in columns:
@@ -158,7 +158,7 @@ def _index(column: Column, names: Sequence[str], width: int, dialect: Dialect) -
         )
     hint = nearest(column.name or "", [name for name in names if name])
     if "did you mean" not in hint and not any(known.name in names for known in dialect.column):
-        hint = ""  # no column of this instrument is there: what the file holds is not told
+        hint = ""  # with no column of this instrument, the file's content is not quoted
     raise LacksError(f"column '{shown(called)}' ({column.key}) is missing{hint}")
 
 
@@ -178,7 +178,7 @@ def _signal(
     label = names[index] if names else f"column {index + 1}"
     unit = column.unit if column.unit is not None else (units[index] if units else None)
     if column.key == "time" and dialect.time.format:
-        unit = "s"  # dates are read as seconds
+        unit = "s"  # dates are read in seconds
     wanted = column.si_unit(unit)
     if unit is None and (column.symbol or wanted not in ("", "1")):
         raise ReadError(
@@ -192,7 +192,7 @@ def _signal(
             f"column '{shown(label)}' ({column.key}): {error}; the right unit can be "
             "given in the dialect"
         ) from error
-    # sign * (scale * x + offset), then the unit; what is pressed is told when all is read
+    # sign * (scale * x + offset), then the unit; the sign "pressed" is resolved after reading
     sign = 1 if column.sign == "pressed" else column.sign
     return ReadColumn(
         place=index,

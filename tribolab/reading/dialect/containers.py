@@ -1,4 +1,4 @@
-"""What a dialect says of a file that holds columns by name: which tables and columns are read."""
+"""Selection of tables and columns in files with named columns, as a dialect states."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from tribolab.reading.raw.readers import read_with
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name
 
-_NAMED = 8  # tables that a message names
+_NAMED = 8  # most tables named in a message
 
 
 def open_as(path: Path, dialect: Dialect) -> RawFile:
-    """Open a container as a dialect says where its tables are.
+    """Open a container with the tables that a dialect describes.
 
     Raises
     ------
     ReadError
-        If it has no such sheet, or is shorter than a record.
+        If the sheet does not exist, or the file is shorter than a record.
     ImportError
         If the library for it is not installed; other libraries' own errors if it is damaged.
     """
@@ -45,9 +45,9 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
 
 
 def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
-    """Return the tables that a dialect reads: the steps of a run, or the whole file as one.
+    """Return the tables of a dialect: the steps of a run, or the whole file as one table.
 
-    Tables of JSON are of one kind, and steps.
+    Tables in JSON are of one kind, and are steps.
     """
     if dialect.tables is not None:
         pattern = guarded(dialect.tables.steps)
@@ -59,26 +59,26 @@ def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
     groups = {column.group for column in dialect.column}
     read = [table for table in file.tables if table.name in groups]
     whole = file._replace(tables=tuple(read)).as_one_table()
-    # channels are called without their group
+    # names of channels exclude their group
     return [whole._replace(columns=tuple(c for table in read for c in table.columns))]
 
 
 def named_tables(file: RawFile) -> str:
-    """Name the first tables of a file, for a message."""
+    """Return the names of the first tables of a file, for a message."""
     return ", ".join(shown(table.name, 30) for table in file.tables[:_NAMED]) or "none"
 
 
 def name_and_unit(column: RawColumn) -> tuple[str, str | None]:
-    """Return a column's name without its unit, and the unit, in brackets or as the file says it."""
+    """Return a column's name without its unit, and the unit, in brackets or stated by the file."""
     name, unit = split_name(column.label)
     return name, unit or column.unit
 
 
 def column_names(path: Path, dialect: Dialect) -> set[str]:
-    """Return the names of a file's columns, with and without their units; none if it is damaged."""
+    """Return the column names of a file, with and without units; empty if it is damaged."""
     try:
         tables = tables_of(open_as(path, dialect), dialect)[:1]
-    except Exception:  # it cannot be this instrument's
+    except Exception:  # then it cannot be from this instrument
         return set()
     named = [name_and_unit(column) for table in tables for column in table.columns]
     return {name for name, _ in named} | {f"{name} [{unit}]" for name, unit in named if unit}

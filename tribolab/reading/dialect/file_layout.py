@@ -1,4 +1,4 @@
-"""How a file lies on the disk: by what it is known, its text, header, rows, groups, records."""
+"""Rules of a dialect for the file: recognition, text, header, rows, groups, records."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
 from tribolab.reading.dialect.checked_text import BinaryField, Encoding, Pattern, Strict
 
-TEXT_CONTAINERS = ("json", "declared records")  # files that begin as text and name their columns
+TEXT_CONTAINERS = ("json", "declared records")  # formats that begin as text and name their columns
 
 
 class Recognise(Strict):
@@ -65,17 +65,17 @@ class Text(Strict):
 
     @property
     def container(self) -> str:
-        """What holds the columns by name, of text that does; "" of lines of text."""
+        """Format with named columns if the text has one; "" for lines of text."""
         return self.arrangement if self.arrangement in TEXT_CONTAINERS else ""
 
     @property
     def is_quoted(self) -> bool:
-        """Whether commas part the cells and are decimal marks in quotes: "0,1","2,5"."""
+        """Whether commas separate cells and are decimal marks in quotes: "0,1","2,5"."""
         return self.delimiter == self.decimal == ","
 
     @property
     def table_decimal(self) -> str:
-        """Decimal mark of the table once its spelling is the usual one."""
+        """Decimal mark of the table after normalisation."""
         return "." if self.is_quoted else self.decimal
 
 
@@ -128,7 +128,7 @@ class Rows(Strict):
     )
 
 
-_IN_A_NAME = r"^[^/\\\x00]+$"  # the companion lies beside the file
+_IN_A_NAME = r"^[^/\\\x00]+$"  # the companion is in the same folder
 
 
 class Pair(Strict):

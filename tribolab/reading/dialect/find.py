@@ -1,4 +1,4 @@
-"""Dialects: descriptions of instruments' raw files as TOML, found by name or by content."""
+"""Dialects: TOML descriptions of instruments' raw files, found by name or by content."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ __all__ = [
 ]
 
 
-Instrument = str | Path | Dialect  # a name, a TOML file, or what it says
-_SHOWN = 5  # mistakes of a dialect that are told at once
-_LEAVING = {  # keys by table: no instrument needs them, and the next release will not know them
+Instrument = str | Path | Dialect  # a name, a TOML file, or a dialect
+_SHOWN = 5  # most errors of a dialect reported at once
+_LEAVING = {  # deprecated keys by table; the next release will not accept them
     "tables": ("steps",),
     "text": ("arrangement",),
     "derived": ("way",),
@@ -47,11 +47,11 @@ _LEAVING = {  # keys by table: no instrument needs them, and the next release wi
 
 
 class UnknownFileError(ReadError):
-    """No dialect describes such a file; one may be drafted from it."""
+    """Raised if no dialect describes a file; one may be drafted from it."""
 
 
 def known_dialects() -> dict[str, Path]:
-    """Names of the instruments that are described, and the TOML file of each.
+    """Return the TOML file of each known instrument, by name.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
     Raises
     ------
     ConfigError
-        If there is no such dialect, or it says something that cannot be.
+        If the dialect does not exist, or is invalid.
 
     Examples
     --------
@@ -106,18 +106,17 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
 
 
 def recognise(path: str | Path) -> Dialect:
-    """Tell from a file's content which known instrument wrote it.
+    """Return the dialect of the known instrument that wrote a file, from its content.
 
     Raises
     ------
     ReadError
-        If no dialect fits, or more than one; the message names the candidates and how to say
-        which.
+        If no dialect or more than one fits; the message names the candidates and how to choose.
     """
     file = peek(path)
-    named = file._replace(path=Path(path))  # what was unpacked lies elsewhere
+    named = file._replace(path=Path(path))  # the unpacked file has another path
     state = identity_of(file.path)
-    find = _fitting.__wrapped__ if state is None else _fitting
+    find = _matching_dialects.__wrapped__ if state is None else _matching_dialects
     fitting = find(file, state, tuple(known_dialects().values()))
     if not fitting and installed_readers():
         # imported late: rarely needed
@@ -138,9 +137,9 @@ def recognise(path: str | Path) -> Dialect:
     raise unknown(named, cures.RUN)
 
 
-@functools.lru_cache(maxsize=4)  # one reading asks several times
-def _fitting(file: File, _: Identity | None, known: tuple[Path, ...]) -> list[Dialect]:
-    """Return the dialects that a file fits."""
+@functools.lru_cache(maxsize=4)  # requested several times per reading
+def _matching_dialects(file: File, _: Identity | None, known: tuple[Path, ...]) -> list[Dialect]:
+    """Return the dialects that match a file."""
     # imported late for a quick start
     from tribolab.reading.dialect.recognise import mismatch
 
@@ -148,7 +147,7 @@ def _fitting(file: File, _: Identity | None, known: tuple[Path, ...]) -> list[Di
 
 
 def unknown(file: File, table: str) -> UnknownFileError:
-    """Return what is said of a file that no dialect fits."""
+    """Return the error for a file that matches no dialect."""
     what = f"no known instrument writes such a file ({file.format})"
     if file.format != "text":
         folder = "describe it as raw_data_schema/README.md says"
@@ -160,7 +159,7 @@ def unknown(file: File, table: str) -> UnknownFileError:
 
 
 def is_scan(dialect: Dialect) -> bool:
-    """Whether a dialect's files hold a profile or map, and no run.
+    """Whether a dialect's files contain a profile or map instead of a run.
 
     Examples
     --------
@@ -172,7 +171,7 @@ def is_scan(dialect: Dialect) -> bool:
 
 
 def scan_dialects() -> list[Dialect]:
-    """Return the known dialects whose files hold a profile or map.
+    """Return the known dialects of files with a profile or map.
 
     Examples
     --------
@@ -220,12 +219,12 @@ def _parse(path: Path) -> Dialect:
         said = [_explain(fault) for fault in error.errors()]
         more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
         raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
-    except TribolabError as error:  # of a unit or number: it says of which key
+    except TribolabError as error:  # error of a unit or number, which names its key
         raise ConfigError(error, where=path) from error
 
 
 def _warn_of_keys(path: Path, content: Json) -> None:
-    """Warn of keys that the next release will not know; once, not in every worker."""
+    """Warn of deprecated keys; once, and not in every worker."""
     if multiprocessing.parent_process() is not None:
         return
     for table, keys in _LEAVING.items():
@@ -250,7 +249,7 @@ def _explain(problem: Any) -> str:
 
 
 def _model_at(loc: tuple[str | int, ...]) -> list[str]:
-    """Names of the keys that are allowed at a place of the dialect."""
+    """Return the names of the keys allowed at a place of the dialect."""
     # imported late for a quick start
     from tribolab.reading.dialect import model as dialect_model
 

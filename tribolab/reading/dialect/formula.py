@@ -1,11 +1,11 @@
-"""The grammar of formulas for derived columns: parsed, never evaluated as code.
+"""Formulas for derived columns: parsed by a grammar, never evaluated as code.
 
     formula = term { ("+" | "-") term }
     term    = factor { ("*" | "/") factor }
     factor  = number | name | "'" number unit "'" | "-" factor | "(" formula ")"
 
-Names are those of columns, of values and ``pi``; put a number with a unit in quotes. Every part
-has a dimension, and sums of different ones are refused.
+Names are those of columns and values, and ``pi``; a number with a unit is in quotes. Every part has
+a dimension, and sums of different dimensions are refused.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tribolab.core.aliases import Array
 from tribolab.core.errors import UnitError, nearest, shown
 from tribolab.units.conversion import base_unit, registry, to_si
 
-_MAX_FORMULA = 300  # letters
+_MAX_FORMULA = 300  # characters
 _DEEPEST = 20
 _QUANTITY = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(?P<unit>.*?)\s*$")
 _TOKEN = re.compile(
@@ -33,14 +33,14 @@ Dimension = tuple[tuple[str, float], ...]  # base dimensions and their powers, i
 
 
 class Operand(NamedTuple):
-    """A number or an array in SI base units, and its dimension."""
+    """Number or array in SI base units, with its dimension."""
 
     value: Array | float
     dimension: Dimension
 
 
 class Node(NamedTuple):
-    """Part of a formula: "number", "name" or an operator, with what it acts upon."""
+    """Part of a formula: "number", "name" or an operator with its operands."""
 
     kind: str
     text: str = ""
@@ -80,7 +80,7 @@ def parse_formula(text: str) -> Node:
     Raises
     ------
     UnitError
-        If it does not follow the grammar, or a unit in it is unknown.
+        If it violates the grammar, or contains an unknown unit.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def parse_formula(text: str) -> Node:
 
 
 def names_in(node: Node) -> set[str]:
-    """Return the names that a formula needs, ``pi`` left out."""
+    """Return the names that a formula needs, except ``pi``."""
     if node.kind == "name":
         return {node.text} - {"pi"}
     return set().union(*(names_in(part) for part in node.parts))
@@ -111,20 +111,20 @@ def evaluate(text: str, known: Mapping[str, Operand], si_unit: str) -> Array | f
     text
         The formula.
     known
-        What its names stand for: (time) or single numbers.
+        Values of its names: arrays (time) or single numbers.
     si_unit
         SI unit of the result.
 
     Returns
     -------
     numpy.ndarray or float
-        In `si_unit`; infinite or not a number where something is divided by zero.
+        Result in `si_unit`; infinite or NaN after division by zero.
 
     Raises
     ------
     UnitError
-        If a name is not known, a sum has parts of different dimensions, or the result is of
-        another dimension than `si_unit`.
+        If a name is unknown, a sum has parts of different dimensions, or the dimension of the
+        result differs from `si_unit`.
 
     Examples
     --------
@@ -180,7 +180,7 @@ _BASE = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[temperature]": "K", "
 
 
 def _written(dimension: Dimension) -> str:
-    """Write a dimension by its SI base units."""
+    """Return a dimension in terms of SI base units."""
 
     def product(parts: list[tuple[str, float]]) -> str:
         return " ".join(f"{_BASE.get(n, n)}{'' if p == 1 else f'{p:g}'}" for n, p in parts)
@@ -191,7 +191,7 @@ def _written(dimension: Dimension) -> str:
 
 
 class _Reader:
-    """Words of a formula, one after another."""
+    """Tokens of a formula, one after another."""
 
     def __init__(self, text: str) -> None:
         self.text, self.place = text, 0
@@ -199,7 +199,7 @@ class _Reader:
         self.next()
 
     def next(self) -> str:
-        """Go to the next word and return the one before."""
+        """Advance to the next token and return the one before."""
         passed = self.word
         match = _TOKEN.match(self.text, self.place)
         if match is None:
@@ -213,7 +213,7 @@ class _Reader:
         return passed
 
     def wrong(self, wanted: str) -> UnitError:
-        """Say what should stand where something else does."""
+        """Return the error for an unexpected token."""
         there = f"'{shown(self.word, 20)}'" if self.word else "its end"
         return UnitError(
             f"formula '{shown(self.text)}': {there} is where {wanted} should be; put a number "
@@ -237,7 +237,7 @@ class _Reader:
         return node
 
     def factor(self, depth: int) -> Node:
-        """Read a number, a name, a quantity or what stands in brackets."""
+        """Read a number, a name, a quantity or an expression in brackets."""
         if depth > _DEEPEST:
             raise UnitError(f"formula '{shown(self.text)}' is nested deeper than {_DEEPEST}")
         if self.kind == "number":
@@ -273,5 +273,5 @@ def _quantity(text: str, formula: str) -> Operand:
 
 
 def _si_unit(unit: str) -> str:
-    """Return SI base units of a unit as they are written for conversions."""
+    """Return the SI base units of a unit in the notation for conversions."""
     return base_unit(unit).replace("**", "^") if unit not in ("", "1") else "1"

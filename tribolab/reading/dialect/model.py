@@ -1,6 +1,6 @@
-"""What a dialect may say: the typed description of one instrument's raw files.
+"""Typed description of one instrument's raw files: all rules of a dialect.
 
-The keys are those of the TOML files in ``raw_data_schema/instruments``; the JSON Schema beside
+The keys are those of the TOML files in ``raw_data_schema/instruments``; the JSON Schema next to
 them is generated from these classes.
 """
 
@@ -153,7 +153,7 @@ class Dialect(Strict):
 
     @property
     def values_reckoned_with(self) -> set[str]:
-        """Names that the speed or formulas rest on, of values and of all else."""
+        """Names of values and others that the speed or formulas depend on."""
         formulas = (names_in(parse_formula(rule.formula)) for rule in self.derived)
         return set(self.speed.values_named.values()).union(*formulas)
 
@@ -161,9 +161,9 @@ class Dialect(Strict):
 def _check_formulas(
     derived: tuple[Derived, ...], columns: list[str], values: list[str], sure: set[str]
 ) -> None:
-    """Each formula needs what there is: columns, values with a unit, results of those before it.
+    """Raise if a formula uses more than columns, values with a unit, and earlier results.
 
-    A quantity that a column surely holds has no formula; of an optional column it is the stand-in.
+    A quantity with a required column has no formula; for an optional column it is the substitute.
     """
     known = {*columns, *values}
     for rule in derived:

@@ -1,4 +1,4 @@
-"""What a dialect says of a profile whose file holds heights without positions."""
+"""Rule of a dialect for profiles with heights but no positions."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def check_pitch(
     values: Sequence[Value],
     columns: Sequence[str],
 ) -> None:
-    """Refuse a pitch that stands for no positions.
+    """Raise if a pitch cannot define positions.
 
     Parameters
     ----------
     pitch
-        The distance of neighbouring points.
+        Distance of neighbouring points.
     pitch_value, length_value
-        Names of the values that hold it, or the length of the whole profile.
+        Names of the values with the pitch, or the length of the whole profile.
     values
         The dialect's values.
     columns
@@ -32,7 +32,7 @@ def check_pitch(
     Raises
     ------
     ValueError
-        If several are given, there are positions already, or no heights, or no such value.
+        If several are given, positions exist, heights are missing, or the value does not exist.
     """
     keys = {"pitch": pitch, "pitch_value": pitch_value, "length_value": length_value}
     given = {key: text for key, text in keys.items() if text is not None}

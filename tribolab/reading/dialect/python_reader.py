@@ -1,4 +1,4 @@
-"""The dialect of a reader in Python: its columns are called by their quantities."""
+"""Dialect of a reader in Python, whose columns are named by quantities."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from tribolab.units.quantities import QUANTITIES
 
 
 class PythonReader(Dialect):
-    """An instrument whose files a reader in Python opens; `reader` is its path or its name."""
+    """Instrument whose files a Python reader opens; `reader` is its path or name."""
 
     reader: str
 
 
 def python_reader(name: str) -> PythonReader:
-    """Return the dialect of a reader, whose columns only a file can tell.
+    """Return the dialect of a reader; its columns become known with a file.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def python_reader(name: str) -> PythonReader:
     Raises
     ------
     ConfigError
-        If there is no such file.
+        If the file does not exist.
     """
     source = source_of(name)
     called = re.sub(r"[^a-z0-9]+", "_", Path(name).stem.lower()).strip("_") or "reader"
@@ -41,14 +41,14 @@ def python_reader(name: str) -> PythonReader:
 
 
 def recognised_by(head: bytes) -> list[Dialect]:
-    """Return the installed readers that can read a file by its first bytes; else those that may."""
+    """Return the installed readers that accept a file by its first bytes; else those that may."""
     said = answers(head)
     sure = [name for name, answer in said.items() if answer == "yes"]
     return [python_reader(name) for name in sure or said]
 
 
 def with_columns(dialect: PythonReader, path: Path) -> PythonReader:
-    """Return a reader's dialect with the columns that it finds in a file.
+    """Return a reader's dialect with the columns found in a file.
 
     Parameters
     ----------
@@ -60,14 +60,14 @@ def with_columns(dialect: PythonReader, path: Path) -> PythonReader:
     Raises
     ------
     ReadError
-        If the reader does not read it.
+        If the reader cannot read it.
     """
     columns = read_with(dialect.reader, path).as_one_table().columns
     names = dict.fromkeys(column.label for column in columns if column.label in QUANTITIES)
     found = tuple(Column(quantity=name, name=name, optional=name != "time") for name in names)
     clocked = "time" not in names and all(column.clock for column in columns)
     if "time" not in names and "height" not in names and not clocked:
-        found = (*dialect.column, *found)  # time is missing, and whoever reads it says so
+        found = (*dialect.column, *found)  # missing time is reported later
     source = next((s for s, name in _SPEED_FROM if name in names), "none")
     update = {"column": found, "speed": Speed.model_validate({"source": source})}
     if clocked:

@@ -1,4 +1,4 @@
-"""Does a file's content fit a dialect? Every rule that the dialect states has to hold."""
+"""Comparison of a file's content with a dialect; every stated rule must match."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import File, fits_format
 
-_ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
+_ROWS = 4000  # rows used for linked columns, enough to include motion
 _FIRST_LINE = re.compile(r"\s*([^\r\n]*)")
-_PREAMBLE = 1 << 13  # characters in which the marks of a preamble are sought
-_LINKED = 0.999  # correlation of the same signal in volts and in its unit
+_PREAMBLE = 1 << 13  # characters of the preamble that are searched
+_LINKED = 0.999  # correlation of one signal in volts and in its unit
 
 
 def mismatch(file: File, dialect: Dialect) -> str | None:
-    """Why a file cannot be this instrument's, or None if it can.
+    """Return why a file cannot be from this instrument; None if it can.
 
     Parameters
     ----------
     file
-        The file, looked at by `tribolab.reading.text.first_bytes.peek`.
+        The file, from `tribolab.reading.text.first_bytes.peek`.
     dialect
         The dialect in question.
     """
@@ -73,7 +73,7 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
         dialect = as_written(file, dialect)
         raw = find_tables(file, dialect, head_only=True)
     except ReadError as error:
-        # a file that is otherwise this instrument's is recognised, so that the error is told
+        # otherwise recognised, so that the error is reported
         return None if rules.preamble else str(error)
     names = {
         f"{name} [{unit}]" if unit else name
@@ -87,16 +87,16 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
     return None
 
 
-@functools.lru_cache(maxsize=4)  # a dozen dialects look at the same file, one after the other
+@functools.lru_cache(maxsize=4)  # a dozen dialects inspect the same file in turn
 def _text(head: bytes, encoding: str) -> str:
     text = head.decode(encoding, errors="replace").replace("\r\n", "\n")
     return text.removeprefix("\ufeff")
 
 
 def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
-    """Check a table without a header by the number and the kinship of its columns."""
+    """Check a table without header by the number of its columns and relations between them."""
     columns, delimiter = dialect.recognise.columns, dialect.text.delimiter
-    first = _FIRST_LINE.match(text)  # of most files it tells
+    first = _FIRST_LINE.match(text)  # sufficient for most files
     rows = []
     if first and len(split_row(first[1], delimiter)) == columns:
         lines = text.splitlines()[:-1][:_ROWS]

@@ -1,4 +1,4 @@
-"""How a dialect says that the sliding speed comes about."""
+"""Rule of a dialect for the source of the sliding speed."""
 
 from __future__ import annotations
 
@@ -56,6 +56,6 @@ class Speed(Strict):
 
     @property
     def values_named(self) -> dict[str, str]:
-        """The values that it names, by key."""
+        """Names of the values used, by key."""
         keys = ("radius_value", "stroke_value", "frequency_value")
         return {key: value for key in keys if (value := getattr(self, key))}

@@ -1,4 +1,4 @@
-"""Refuse true and false where a number or a text belongs: Python takes them for 1 and 0."""
+"""Base class that refuses true and false for numbers or text, which Python accepts as 1 and 0."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pydantic import BaseModel, ValidationInfo, field_validator
 
 
 class NoSwitches(BaseModel):
-    """What a file says, in which true and false stand for switches only.
+    """Model in which only switches may be true or false.
 
     Examples
     --------

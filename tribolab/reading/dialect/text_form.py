@@ -1,4 +1,4 @@
-"""How a table is written, of a dialect that leaves it to the file: cells, decimals, units."""
+"""Format of a table that the dialect leaves to the file: delimiter, decimal mark, units."""
 
 from __future__ import annotations
 
@@ -13,41 +13,41 @@ from tribolab.reading.text.cells import split_name, split_row
 from tribolab.reading.text.first_bytes import File, peek
 
 _ANY = "any"
-_DELIMITERS = ("\t", ";", "|", ",")  # of those that part a header's line alike, the first
-_ROWS = 20  # looked at below the names
+_DELIMITERS = ("\t", ";", "|", ",")  # of several that split a header equally, the first
+_ROWS = 20  # lines inspected below the names
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
 _COMMA, _POINT = re.compile(r"\d,\d"), re.compile(r"\d\.\d")
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?")
 
 
 def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
-    """Complete a dialect that leaves to the file how its table is written.
+    """Complete a dialect whose table format is determined by the file.
 
     Parameters
     ----------
     path
         The file.
     dialect
-        The dialect. One that says its delimiter is returned as it is.
+        The dialect. One with a stated delimiter is returned unchanged.
 
     Returns
     -------
     Dialect
-        With the delimiter that parts the header's line into the most cells, the decimal mark and
-        the encoding of what stands below it, and units from the next line where no name of the
-        header has one. That of a reader in Python with the columns that it finds.
+        Dialect with the delimiter that splits the header into most cells, the decimal mark and
+        encoding of the rows, and units from the next line if the header has none. For a Python
+        reader, with the columns that it finds.
 
     Raises
     ------
     ReadError
-        If the file has no such header.
+        If the header is missing.
     """
     if isinstance(dialect, PythonReader):
         return with_columns(dialect, Path(path.path if isinstance(path, File) else path))
     if dialect.text.delimiter != _ANY:
         return dialect
     file = path if isinstance(path, File) else peek(path)
-    if file.format != "text":  # whoever reads it says so
+    if file.format != "text":  # the reader reports it
         return dialect
     text, encoding = _decoded(file.head)
     header, *below = _from_header(file, text, dialect)
@@ -68,19 +68,19 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
 
 
 def _decoded(head: bytes) -> tuple[str, str]:
-    """Return a file's first text, and in which encoding it is."""
+    """Return a file's first text, and its encoding."""
     if head.startswith(_WIDE):
-        return head.decode("utf-16", errors="ignore"), "utf-8"  # it is mended to that
+        return head.decode("utf-16", errors="ignore"), "utf-8"  # it is converted to that
     try:
         return head.decode("utf-8-sig"), "utf-8"
     except UnicodeDecodeError as error:
-        if error.start > len(head) - 4:  # the first megabyte ends within a letter
+        if error.start > len(head) - 4:  # the first megabyte ends within a character
             return head.decode("utf-8-sig", errors="ignore"), "utf-8"
         return head.decode("latin-1"), "latin-1"
 
 
 def _from_header(file: File, text: str, dialect: Dialect) -> list[str]:
-    """Return the header's line and those below it that are not blank."""
+    """Return the header line and the following lines that are not blank."""
     lines = text.splitlines()
     header = dialect.header
     if header.pattern is not None:
@@ -107,5 +107,5 @@ def _decimal(rows: list[str], delimiter: str) -> str:
 
 
 def _is_numbers(row: str, delimiter: str) -> bool:
-    """Whether a row holds numbers, as one of units does not."""
+    """Whether a row contains numbers, unlike a row of units."""
     return any(_NUMBER.fullmatch(cell) for cell in split_row(row, delimiter))

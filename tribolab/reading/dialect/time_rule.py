@@ -1,4 +1,4 @@
-"""Where a dialect says that time comes from."""
+"""Rule of a dialect for the source of time."""
 
 from __future__ import annotations
 
@@ -87,26 +87,26 @@ class Time(Strict):
 
 
 def sampling_interval(text: str, name: str) -> float:
-    """Return the time [s] between samples from their rate or from the interval itself.
+    """Return the sampling interval [s] from a rate or an interval.
 
     Parameters
     ----------
     text
-        A number with a unit, of frequency or of time.
+        Number with a unit of frequency or time.
     name
-        What it is called, for messages.
+        Name for messages.
 
     Raises
     ------
     UnitError
-        If it is neither.
+        If it is neither a rate nor an interval.
 
     Examples
     --------
     >>> sampling_interval("2 kHz", "rate"), sampling_interval("0.5 ms", "rate")
     (0.0005, 0.0005)
     """
-    if "Hz" not in text:  # a unit that does not fit is slow to refuse
+    if "Hz" not in text:  # a failing conversion is slow
         with contextlib.suppress(UnitError):
             return positive(text, "s", name)
     return 1.0 / positive(text, "Hz", name)

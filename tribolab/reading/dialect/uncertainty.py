@@ -16,25 +16,25 @@ from tribolab.units.conversion import conversion, to_si
 Distribution = Literal["standard", "expanded", "half-width", "triangular", "step"]
 Varies = Literal["calibration", "mount", "run", "stroke"]
 
-# what a stated value is divided by (JCGM 100:2008, 4.3); "expanded" states its own factor
+# divisor of a stated value (JCGM 100:2008, 4.3); "expanded" states its own factor
 _DIVISOR = {"standard": 1.0, "half-width": 3**0.5, "triangular": 6**0.5, "step": 12**0.5}
 
 
 class Known(NamedTuple):
-    """A standard uncertainty as it goes into a budget.
+    """Standard uncertainty for a budget.
 
     Parameters
     ----------
     standard
         Standard uncertainty, in the SI unit of its name.
     dof
-        Degrees of freedom behind it.
+        Its degrees of freedom.
     varies
-        With what it takes another value: the calibration, the mount, the run or the stroke.
+        Level at which its value changes: calibration, mount, run or stroke.
     distribution
-        What was stated.
+        Kind of the statement.
     source
-        Where it was stated.
+        Source of the statement.
     """
 
     standard: float
@@ -91,7 +91,7 @@ class StatedUncertainty(_Strict):
         Raises
         ------
         UnitError
-            If it is no number with such a unit, or below zero.
+            If it is not a number with such a unit, or is negative.
         """
         if self.full_scale is not None:
             if unit != "N":
@@ -104,7 +104,7 @@ class StatedUncertainty(_Strict):
         return _difference(self.value, unit)
 
     def known(self, unit: str, usual: str) -> Known:
-        """Return the standard uncertainty in an SI unit, varying as usual where it is not said."""
+        """Return the standard uncertainty in an SI unit, with the usual level if none is stated."""
         divisor = _DIVISOR.get(self.kind, self.k or 1.0)
         return Known(
             self.size(unit) / divisor,
@@ -116,7 +116,7 @@ class StatedUncertainty(_Strict):
 
 
 def _difference(text: str, unit: str) -> float:
-    """Return a size in an SI unit; of a temperature, a difference, which has no zero."""
+    """Return a size in an SI unit; for a temperature, a difference."""
     size = to_si(text, unit, name="value")
     if unit == "K":
         size -= conversion(text.strip().lstrip("+-.0123456789eE "), unit)[1]
@@ -141,7 +141,7 @@ _Angle = Annotated[StatedUncertainty, AfterValidator(_in("rad"))] | None
 _Force = Annotated[StatedUncertainty, AfterValidator(_in("N"))] | None
 _Difference = Annotated[StatedUncertainty, AfterValidator(_in("K"))] | None
 
-# SI unit of each name, and with what it varies where nobody says so
+# SI unit of each name, and the level at which it varies by default
 NAMES: dict[str, tuple[str, Varies]] = {
     "friction_gain": ("1", "calibration"),
     "normal_gain": ("1", "calibration"),
@@ -163,7 +163,7 @@ NAMES: dict[str, tuple[str, Varies]] = {
     "youngs_modulus": ("1", "calibration"),
 }
 
-# what a model takes as given: the last two by the liquid's viscosity
+# model inputs; the last two affect the liquid's viscosity
 MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus", "temperature", "water_content")
 
 
@@ -224,7 +224,7 @@ class Uncertainty(_Strict):
     )
 
     def plain(self) -> Json:
-        """Return what is stated as attributes of a run hold it: by name, in SI."""
+        """Return the stated uncertainties for attributes of runs: by name, in SI."""
         return {
             name: stated.known(*NAMES[name])._asdict()
             for name in NAMES

@@ -1,4 +1,4 @@
-"""What a dialect says of one value that stands outside the table."""
+"""Rule of a dialect for one value outside the table."""
 
 from __future__ import annotations
 
@@ -62,12 +62,12 @@ class Value(Strict):
 
     @property
     def bare(self) -> Counted | None:
-        """What a unit per time counts that does not say it, if the name is a quantity."""
+        """Events counted by a unit per time that does not name them, if the name is a quantity."""
         return QUANTITIES[self.name].bare if self.name in QUANTITIES and self.to is None else None
 
     @property
     def si_unit(self) -> str:
-        """Unit in which a number is kept."""
+        """SI unit of the stored number."""
         if self.to is not None:
             return self.to
         try:
@@ -82,9 +82,9 @@ class Value(Strict):
             ) from error
 
     def _own_unit(self) -> str:
-        """SI unit of the unit given: of a quantity of its kind, else of base units."""
+        """Return the SI unit for the given unit: of a quantity of its kind, else base units."""
         units = dict.fromkeys(known.unit for known in QUANTITIES.values())
-        if reciprocal(str(self.unit)):  # cycles stay cycles
+        if reciprocal(str(self.unit)):  # cycles remain cycles
             units = dict.fromkeys(("1/s", "Hz", "rad/s", *units))
         for unit in units:
             with contextlib.suppress(TribolabError):
@@ -94,7 +94,7 @@ class Value(Strict):
 
     @property
     def attribute(self) -> str:
-        """Name of the run's attribute: the SI unit is its ending."""
+        """Name of the run's attribute, with the SI unit as suffix."""
         if self.unit is None or self.si_unit in ("", "1"):
             return self.name
         return f"{self.name}_{re.sub(r'[^A-Za-z0-9]+', '_', self.si_unit)}"

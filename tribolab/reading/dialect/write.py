@@ -1,4 +1,4 @@
-"""Write a dialect as TOML for people: what it says, with remarks as comments."""
+"""Writing of a dialect as readable TOML, with remarks as comments."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 class Remarks(NamedTuple):
-    """Comments of a dialect, by the place that they belong to.
+    """Comments of a dialect, by place.
 
-    A place is a table (``time``), one of several (``column.2``, from 0) or a key (``time.source``);
-    the keys above all tables are ``""``.
+    A place is a table (``time``), one of several tables (``column.2``, from 0) or a key
+    (``time.source``); the place of keys above all tables is ``""``.
 
     Attributes
     ----------
     above, below
-        Lines above and below a table; below ``column`` those behind the last column.
+        Lines above and below a table; below ``column`` means after the last column.
     behind
-        What stands behind a key, in its line.
+        Comments after a key, in its line.
     """
 
     above: Mapping[str, tuple[str, ...]] = {}
@@ -67,7 +67,7 @@ def dialect_toml(dialect: Dialect, remarks: Remarks | None = None) -> str:
 
 
 def table_lines(heading: str, content: Mapping[str, Any], behind: Mapping[str, str]) -> list[str]:
-    """Return a table of TOML line by line, with what stands behind its keys.
+    """Return a table of TOML as lines, with comments after its keys.
 
     >>> table_lines("[time]", {"source": "rate", "rate": "1 kHz"}, {"rate": "guessed"})
     ['[time]', 'source = "rate"', 'rate = "1 kHz"    # guessed']
@@ -90,17 +90,17 @@ def commented(lines: Iterable[str]) -> list[str]:
 
 
 def plain(text: str) -> str:
-    """Text that can be written as UTF-8: a file's name may hold any bytes."""
+    """Return text that can be encoded as UTF-8; file names may contain any bytes."""
     return text.encode("utf-8", "replace").decode()
 
 
 def comment(text: str) -> str:
-    """Text as it may stand in a comment, on one line."""
+    """Return text in a form that is valid in a comment, on one line."""
     return _UNPRINTABLE.sub(" ", text)
 
 
 def quoted(text: str) -> str:
-    r"""Text between quotation marks; a backslash of a pattern is one where that can be.
+    r"""Return text in quotation marks; backslashes of a pattern remain single if possible.
 
     >>> print(quoted("a 'b'"), quoted(r"load (\d+)"))
     "a 'b'" 'load (\d+)'

@@ -1,4 +1,4 @@
-"""Zeros that are read where the user says: at the beginning, in an interval, in a blank run."""
+"""Zeros read where the user states: at the start, in an interval, in a blank run."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ _BETWEEN = re.compile(r"^\s*(\S.*?)\s+to\s+(\S.*?)\s*$")
 _TABLES = re.compile(r"^\s*table\s+(\S.*?)(?:\s+to\s+table\s+(\S.*?))?\s*$")
 _BLANK = re.compile(r"^\s*file\s+(\S.*?)\s*$")
 _MIN_SAMPLES = 10  # samples
-_RUBS = 0.12  # of the highest friction
-_MOVES, _MOSTLY = 0.01, 0.5  # of the highest speed; share of the samples
-_BATCHES = 16  # means whose scatter says how well the zero is known
+_RUBS = 0.12  # share of the highest friction above which there is contact
+_MOVES, _MOSTLY = 0.01, 0.5  # shares: of the highest speed, of the samples
+_BATCHES = 16  # batches whose scatter gives the error of the zero
 
 
 class ZeroRule(NamedTuple):
-    """Where a zero is read: samples from the start, from and to [s], a file, or tables of the file.
+    """Source of a zero: first samples, an interval [s], a file, or tables of the file.
 
-    Of two tables the first was recorded before the run and the second behind it.
+    Of two tables the first was recorded before the run and the second after it.
     """
 
     samples: int = 0
@@ -40,19 +40,19 @@ class ZeroRule(NamedTuple):
 
 
 def parse_zero(text: str) -> ZeroRule:
-    """Parse where a zero is read.
+    """Parse the source of a zero.
 
     Parameters
     ----------
     text
         ``"first 200 samples"``, ``"first 2 s"``, ``"1.5 s to 3 s"`` (time from the first sample) or
-        ``"file blank.csv"`` (beside the run's own file), ``"table zero"`` (of the run's own file),
-        ``"table zero to table after"`` (before and behind the run).
+        ``"file blank.csv"`` (in the folder of the run's file), ``"table zero"`` (of the run's
+        file), ``"table zero to table after"`` (before and after the run).
 
     Raises
     ------
     UnitError
-        If it is none of these.
+        If the text has another form.
 
     Examples
     --------
@@ -87,34 +87,34 @@ def take_zeros(
     where: str,
     units: Mapping[str, str] | None = None,
 ) -> Json:
-    """Take the zeros of signals off them.
+    """Subtract the zeros of signals.
 
     Parameters
     ----------
     columns
         Signals in SI by quantity (time); those with a rule are replaced.
     time
-        From the first sample [s] (time).
+        Time since the first sample [s] (time).
     rules
-        Where each quantity's zero is read, see `parse_zero`.
+        Source of each quantity's zero, see `parse_zero`.
     blank
-        Gives the columns of a file, or of "table ...", that stands in a rule.
+        Function that returns the columns of a file, or of "table ...", named in a rule.
     where
         The run, for messages.
     units
-        SI units of what is no quantity: of these the attributes have no unit in their names.
+        SI units of symbols that are not quantities; their attributes have no unit in the name.
 
     Returns
     -------
     dict
-        Attributes: ``<quantity>_zero_N``, its standard error where it was read, from the scatter of
-        16 batches (``..._zero_sem_N``), and ``zeros_read``, where that was. Between two tables it
-        goes evenly from one to the other, and ``..._zero_uncertainty_N`` says how far that is.
+        Attributes: ``<quantity>_zero_N``, its standard error from the scatter of 16 batches
+        (``..._zero_sem_N``), and its source, ``zeros_read``. Between two tables it is interpolated
+        linearly, and ``..._zero_uncertainty_N`` includes the change.
 
     Raises
     ------
     ReadError
-        If the signal is not there, or fewer than 10 samples tell its zero.
+        If the signal is missing, or has fewer than 10 samples for its zero.
     """
     attrs: Json = {}
     said = {}
@@ -132,7 +132,7 @@ def take_zeros(
         zero = float(np.mean([mean for mean, _ in read]))
         error = float(np.hypot.reduce([error for _, error in read])) / len(read)
         columns[name] = lowered(columns[name], read[0][0])
-        if len(read) > 1:  # it went on from the one to the other
+        if len(read) > 1:  # it drifted between the two tables
             change = read[1][0] - read[0][0]
             columns[name] = columns[name] - np.interp(time, [time[0], time[-1]], [0.0, change])
             own = math.hypot(error, change / math.sqrt(12))
@@ -149,16 +149,16 @@ def zeros_of_derived(
     signals: Mapping[str, np.ndarray],
     attrs: Json,
 ) -> None:
-    """Say of a force that follows from a signal whose zero was read that its own was, too.
+    """Transfer the zero of a signal to the attributes of a force derived from it.
 
     Parameters
     ----------
     columns
         Arrays in SI by quantity (time).
     signals
-        Signals of which a zero was taken off, by symbol (time).
+        Signals with their zero subtracted, by symbol (time).
     attrs
-        Attributes of the run, with ``derived`` and from `take_zeros`; added to.
+        Attributes of the run, with ``derived`` and those of `take_zeros`; changed in place.
     """
     for name, formula in dict(attrs.get("derived", {})).items():
         used = [symbol for symbol in signals if re.search(rf"\b{symbol}\b", str(formula))]
@@ -166,7 +166,7 @@ def zeros_of_derived(
             continue
         signal, unit = signals[used[0]], quantity(name).unit
         large = np.abs(signal) > 0.5 * np.nanmax(np.abs(signal), initial=0.0)
-        factor = float(np.median(columns[name][large] / signal[large]))  # times a constant
+        factor = float(np.median(columns[name][large] / signal[large]))  # proportional to it
         for key in ("zero", "zero_sem", "zero_uncertainty"):
             if (value := attrs.pop(f"{used[0]}_{key}", None)) is not None:
                 times = factor if key == "zero" else abs(factor)
@@ -176,23 +176,23 @@ def zeros_of_derived(
 
 
 def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: Json) -> Json:
-    """Take a load that is only stated for none where the zero of the friction is read in motion.
+    """Set a stated load to zero where the zero of friction is read during motion.
 
-    What moves while its friction is zero is not in contact: it is no sliding under that load.
+    Motion at zero friction is without contact: it is not sliding under that load.
 
     Parameters
     ----------
     columns
         Signals in SI by quantity (time); the load is replaced.
     time
-        From the first sample [s] (time).
+        Time since the first sample [s] (time).
     attrs
         Attributes of the run, with ``zeros_read`` and ``derived``.
 
     Returns
     -------
     dict
-        ``load_stated_from_s``, where that was done.
+        ``load_stated_from_s`` if the load was changed.
     """
     read, made = attrs.get("zeros_read", {}), attrs.get("derived", {})
     moves = ("sliding_velocity", "rotation_speed", "set_speed")
@@ -209,22 +209,22 @@ def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: J
     size = np.abs(motion)
     if not np.mean(size[:rows] > _MOVES * np.nanmax(size, initial=0.0)) > _MOSTLY:
         return {}
-    rows += _until_it_rubs(np.abs(columns["friction_force"]), rows)
+    rows += _samples_without_friction(np.abs(columns["friction_force"]), rows)
     free = load.copy()
     free[:rows] = 0.0
     columns["normal_force"] = free
     return {"load_stated_from_s": float(time[min(rows, load.size - 1)])}
 
 
-def _until_it_rubs(friction: np.ndarray, rows: int) -> int:
-    """Return how many samples more there is no friction; a spike is none: five in a row are."""
+def _samples_without_friction(friction: np.ndarray, rows: int) -> int:
+    """Return how many more samples have no friction; it starts with five samples in a row."""
     rubs = friction[rows:] > _RUBS * np.nanpercentile(friction, 90)
     held = np.convolve(rubs, np.ones(5), "valid") >= 5
     return int(np.argmax(held)) if held.any() else 0
 
 
 def _zero_of(name: str, text: str, values: np.ndarray, where: str) -> tuple[float, float]:
-    """Return the mean of samples that tell a zero, and its standard error."""
+    """Return the mean of the samples for a zero, and its standard error."""
     values = values[np.isfinite(values)]
     if values.size < _MIN_SAMPLES:
         raise ReadError(
@@ -246,7 +246,7 @@ def _samples(
     where: str,
     table: str,
 ) -> np.ndarray:
-    """Return the samples that tell a zero."""
+    """Return the samples for a zero."""
     if other := table or rule.file:
         of_file = blank(other)
         if name not in of_file:

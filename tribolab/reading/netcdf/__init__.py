@@ -1,1 +1,1 @@
-"""Results as netCDF files, and tables checked against their schema."""
+"""Results as netCDF files, and validation of tables against their schema."""

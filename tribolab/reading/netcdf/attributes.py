@@ -1,4 +1,4 @@
-"""Attributes as netCDF holds them: what it refuses becomes JSON text, here and only here."""
+"""Conversion of attributes for netCDF: unsupported types become JSON text."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _MARK, _TUPLE = "json:", "json-tuple:"
 
 
 def encoded(attrs: Mapping[Any, Any]) -> Json:
-    """Return attributes that netCDF takes.
+    """Return attributes in types that netCDF supports.
 
-    True, False, None, dicts and lists become JSON text behind the mark ``json:``, tuples behind
+    True, False, None, dicts and lists become JSON text with the prefix ``json:``, tuples with
     ``json-tuple:``.
 
     Examples
@@ -28,7 +28,7 @@ def encoded(attrs: Mapping[Any, Any]) -> Json:
 
 
 def decoded(attrs: Mapping[Any, Any]) -> Json:
-    """Return attributes as they were before `encoded`.
+    """Return the original attributes; inverse of `encoded`.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def decoded(attrs: Mapping[Any, Any]) -> Json:
 
 def _encode(value: Any) -> Any:
     if isinstance(value, str):
-        # text that happens to begin with the mark must come back as text
+        # text that happens to begin with the prefix must be restored as text
         return _MARK + json.dumps(value) if value.startswith((_MARK, _TUPLE)) else value
     if isinstance(value, np.bool_):
         value = bool(value)

@@ -1,7 +1,7 @@
-"""Short groups of data files, kept by each process: what many look at is read but once.
+"""Cache of short groups of data files in each process.
 
-A fit, its figures and what the page shows of it look at the same few thousand numbers. To open a
-netCDF file costs as much as to read a hundred of its variables.
+A fit, its figures and the page use the same few thousand numbers, and opening a netCDF file takes
+as long as reading a hundred of its variables.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from tribolab.reading.netcdf.netcdf import read_netcdf, read_short
 if TYPE_CHECKING:
     import xarray as xr
 
-SHORT = 1 << 16  # values of a group that is kept
-_MOST = 1 << 22  # values of all that a process keeps
+SHORT = 1 << 16  # most values of a cached group
+_MOST = 1 << 22  # most values cached by a process
 
 
 class KeptReading:
-    """Short groups of the files that were asked for last."""
+    """Cache of the short groups of recently read files."""
 
     def __init__(self) -> None:
         self._files: OrderedDict[tuple[str, int, int, int], dict[str | None, xr.Dataset]]
@@ -30,7 +30,7 @@ class KeptReading:
         self._lock = threading.Lock()
 
     def groups(self, path: Path) -> dict[str | None, xr.Dataset]:
-        """Return the short groups of a file as it is now."""
+        """Return the short groups of a file in its present state."""
         state = path.stat()
         identity = (str(path.absolute()), state.st_size, state.st_mtime_ns, state.st_ino)
         with self._lock:
@@ -51,7 +51,7 @@ _KEPT = KeptReading()
 
 
 def read_kept(path: str | Path, group: str | None = None) -> xr.Dataset:
-    """Read a dataset as `read_netcdf` does, from what this process keeps if the file is the same.
+    """Read a dataset like `read_netcdf`, from the cache if the file is unchanged.
 
     Parameters
     ----------

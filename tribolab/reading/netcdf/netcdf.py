@@ -1,4 +1,4 @@
-"""Results as netCDF: what is written comes back the same."""
+"""Lossless writing and reading of datasets as netCDF."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from tribolab.reading.raw.source import check_regular
 if TYPE_CHECKING:
     import netCDF4
 
-# The library is not safe under threads, which some executors use.
+# the library is not thread-safe, and some executors use threads
 _LIBRARY = threading.RLock()
-_CACHE = 1 << 20  # bytes of a long variable that the library keeps
-_GROUPS = "groups"  # attribute of the root of a file of groups
-# What netCDF4 and xarray raise on data that netCDF cannot hold, and on a disk that takes no more.
+_CACHE = 1 << 20  # bytes that the library caches of a long variable
+_GROUPS = "groups"  # attribute of the root with the names of the groups
+# errors of netCDF4 and xarray for unsupported data, and on a full disk
 _REFUSED = (OSError, ValueError, TypeError, AttributeError, KeyError, RuntimeError)
 
 
@@ -39,7 +39,7 @@ def write_netcdf(
     group: str | None = None,
     mode: Literal["w", "a"] | None = None,
 ) -> Path:
-    """Write a dataset, losing nothing: values, types, flags and attributes come back the same.
+    """Write a dataset without loss: values, types, flags and attributes are restored on reading.
 
     Parameters
     ----------
@@ -48,10 +48,10 @@ def write_netcdf(
     path
         The file.
     group
-        Group in the file; several datasets can so share one file.
+        Group in the file, so that several datasets can share one file.
     mode
-        ``"w"`` writes a new file, ``"a"`` adds to it; by default a group is added to a file that
-        is there, and a dataset without a group starts a new one.
+        ``"w"`` writes a new file, ``"a"`` adds to it; by default a group is added to an existing
+        file, and a dataset without a group starts a new file.
 
     Returns
     -------
@@ -65,10 +65,10 @@ def write_netcdf(
 
     Notes
     -----
-    Long arrays are stored in chunks of 65 536 samples with zlib, shuffled where that makes them
-    smaller. True, False, None, dicts and lists among the attributes become JSON text behind the
-    mark ``json:``. In a file of groups the root's attribute ``groups`` names them, for those who
-    open the root alone. The file is sealed (see `tribolab.reading.netcdf.seal`).
+    Long arrays are stored in chunks of 65 536 samples with zlib, shuffled if that makes them
+    smaller. True, False, None, dicts and lists among the attributes become JSON text with the
+    prefix ``json:``. The root's attribute ``groups`` lists the groups of a file. The file is sealed
+    (see `tribolab.reading.netcdf.seal`).
 
     Examples
     --------
@@ -85,14 +85,14 @@ def write_netcdf(
 
 
 def write_groups(groups: Mapping[str | None, xr.Dataset], path: str | Path) -> Path:
-    """Write datasets as the groups of a new file, which is opened but once; as `write_netcdf`.
+    """Write datasets as groups of a new file, opened only once; see `write_netcdf`.
 
     Parameters
     ----------
     groups
-        Dataset by name of the group; None stands for the root.
+        Dataset by name of the group; None is the root.
     path
-        The file; one that is there is replaced.
+        The file; an existing one is replaced.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w
             unseal(path)
         with _LIBRARY, _plain_name(path) as name, netCDF4.Dataset(name, mode) as file:
             write_into(file, groups)
-            if any(groups):  # whoever opens the file without a group sees the root alone
+            if any(groups):  # visible when the file is opened without a group
                 file.setncattr(_GROUPS, "; ".join(file.groups))
         seal(path)
     except _REFUSED as error:
@@ -135,7 +135,7 @@ def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w
 
 @contextlib.contextmanager
 def _plain_name(path: Path) -> Iterator[Path]:
-    """Yield the path, or a link to it where the libraries cannot pass its bytes on."""
+    """Yield the path, or a link to it if the libraries cannot encode its name."""
     try:
         str(path).encode(sys.getfilesystemencoding())
     except UnicodeEncodeError:
@@ -148,7 +148,7 @@ def _plain_name(path: Path) -> Iterator[Path]:
 
 
 def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
-    """Read a dataset that `write_netcdf` wrote, into memory.
+    """Read a dataset written by `write_netcdf` into memory.
 
     Parameters
     ----------
@@ -160,12 +160,12 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
     Raises
     ------
     ReadError
-        If there is no such file or group, or the file is no netCDF, or damaged.
+        If the file or group does not exist, or the file is damaged or not netCDF.
 
     Notes
     -----
-    The file is read in a child process. One that carries a seal and is not what it was when it was
-    sealed is refused.
+    The file is read in a child process. A file with a seal that does not match its content is
+    refused.
 
     Examples
     --------
@@ -185,27 +185,26 @@ def read_groups(
     optional: bool = False,
     only: Mapping[str, Collection[str]] | None = None,
 ) -> dict[str | None, xr.Dataset]:
-    """Read several groups of a file, which is opened but once; as `read_netcdf` does it.
+    """Read several groups of a file, opened only once; see `read_netcdf`.
 
     Parameters
     ----------
     path
         The file.
     groups
-        Their names; None stands for the root.
+        Names of the groups; None is the root.
     optional
-        Whether groups that the file has not are passed over.
+        Whether to ignore missing groups.
     only
-        Variables that are read, by group, where not all are wanted; those that are not there are
-        passed over.
+        Variables to read, by group; by default all. Missing variables are ignored.
 
     Raises
     ------
     ReadError
-        As `read_netcdf`.
+        As for `read_netcdf`.
     """
     wanted = {name: tuple(names) for name, names in (only or {}).items()}
-    return _read_groups(_unchanged(Path(path)), list(groups), optional=optional, only=wanted)
+    return _read_groups(_check_seal_of(Path(path)), list(groups), optional=optional, only=wanted)
 
 
 @isolated("netCDF4", "h5py", "xarray")
@@ -232,21 +231,21 @@ def _read_groups(
 
 
 def read_short(path: str | Path, most: float) -> dict[str | None, xr.Dataset]:
-    """Read all groups of a file that are short, and its root if that is.
+    """Read all short groups of a file, including the root.
 
     Parameters
     ----------
     path
         The file.
     most
-        Values that a group may have in all its variables; infinity for all groups.
+        Most values in all variables of a group; infinity for all groups.
 
     Raises
     ------
     ReadError
-        As `read_netcdf`.
+        As for `read_netcdf`.
     """
-    return _read_short(_unchanged(Path(path)), most)
+    return _read_short(_check_seal_of(Path(path)), most)
 
 
 @isolated("netCDF4", "h5py", "xarray")
@@ -261,17 +260,17 @@ def _values(group: netCDF4.Dataset) -> int:
     return sum(variable.size for variable in group.variables.values())
 
 
-def _unchanged(path: Path) -> Path:
-    """Return the path of a file whose seal, if it carries one, matches its content."""
+def _check_seal_of(path: Path) -> Path:
+    """Return the path of a file after checking its seal, if it has one."""
     check_regular(path)
-    with contextlib.suppress(OSError):  # of a file that cannot be opened, its reader says why
+    with contextlib.suppress(OSError):  # the reader reports why a file cannot be opened
         check_seal(path)
     return path
 
 
 @contextlib.contextmanager
 def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
-    """Open a file in which no data are from elsewhere."""
+    """Open a file that contains no references to external data."""
     # imported late: netCDF4 loads slowly
     import netCDF4
 
@@ -281,7 +280,7 @@ def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
 
 
 def _loaded(data: xr.Dataset) -> xr.Dataset:
-    """Return a dataset whose values are read, long ones into scratch files."""
+    """Return a dataset with loaded values, long ones in scratch files."""
     for name, variable in list(data.data_vars.items()):
         if variable.ndim == 1 and variable.dtype.kind in "fiu" and is_long(variable.size):
             values = room(variable.size, variable.dtype)
@@ -297,7 +296,7 @@ def _group(file: netCDF4.Dataset, group: str | None, only: Collection[str] | Non
         return plain
     store = xr.backends.NetCDF4DataStore(file, group=group)
     for variable in (file if group is None else file[group]).variables.values():
-        if is_long(variable.size):  # else the library keeps much of it, until the file is closed
+        if is_long(variable.size):  # else the library caches much of it until the file is closed
             variable.set_var_chunk_cache(_CACHE)
     data = xr.open_dataset(store, decode_times=False, mask_and_scale=False)
     if only is not None:
@@ -308,5 +307,5 @@ def _group(file: netCDF4.Dataset, group: str | None, only: Collection[str] | Non
         data[name].attrs = decoded(data[name].attrs)
         data[name].encoding = {}
     data.encoding = {}
-    data.set_close(None)  # it is in memory: an open file could not travel to another process
+    data.set_close(None)  # in memory; an open file could not be sent to another process
     return data

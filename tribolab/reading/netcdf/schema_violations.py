@@ -1,4 +1,4 @@
-"""What a check against a Table Schema found: every violation, and a screenful of them as text."""
+"""Violations of a Table Schema, complete and as a short text."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import pandas as pd
 
 from tribolab.core.errors import shown
 
-_SCREEN = 20  # violations that are shown
+_SCREEN = 20  # violations shown
 
 
 class Violation(NamedTuple):
-    """One value that breaks a rule; `row` counts from 0 and is None where a whole column does."""
+    """Value that violates a rule; `row` counts from 0 and is None for a whole column."""
 
     row: int | None
     column: str
@@ -23,7 +23,7 @@ class Violation(NamedTuple):
     limit: object
 
     def __str__(self) -> str:
-        """Say what is wrong, in one line."""
+        """Return the violation as one line."""
         if self.constraint == "missing column":
             return f"column '{shown(self.column)}' is missing"
         where = f"column '{shown(self.column)}'" + ("" if self.row is None else f", row {self.row}")
@@ -35,7 +35,7 @@ class Violation(NamedTuple):
 
 
 class Broken(NamedTuple):
-    """All violations of one rule in one column: their rows and values."""
+    """All violations of one rule in one column, with rows and values."""
 
     column: str
     constraint: str
@@ -45,7 +45,7 @@ class Broken(NamedTuple):
 
 
 class Violations(NamedTuple):
-    """What was found, rule by rule; empty, and then false, if the data are as they should be."""
+    """All violations, by rule; empty and false if the data conform."""
 
     broken: tuple[Broken, ...]
 
@@ -59,7 +59,7 @@ class Violations(NamedTuple):
         return sum(max(len(broken.rows), 1) for broken in self.broken)
 
     def first(self, number: int = _SCREEN) -> list[Violation]:
-        """Return the first violations, of each rule at least one."""
+        """Return the first violations, at least one for each rule."""
         share = max(number // max(len(self.broken), 1), 1)
         violations = []
         for rule in self.broken:
@@ -90,7 +90,7 @@ class Violations(NamedTuple):
         return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=names)
 
     def __str__(self) -> str:
-        """Say the first violations, a line each, and how many there are more."""
+        """Return the first violations, a line each, and the number of further ones."""
         shown = self.first()
         lines = [str(violation) for violation in shown]
         if self.total > len(shown):

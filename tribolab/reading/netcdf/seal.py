@@ -1,7 +1,7 @@
-"""The seal of what tribolab writes: a checksum, by which damage is noticed when a file is read.
+"""Seal of files written by tribolab: a checksum that reveals damage on reading.
 
-`seal` puts the SHA-256 of a file behind its last byte, where HDF5 does not look; `check_seal`
-refuses a file that is not what it was. The seal has no key: it detects damage, not forgery.
+`seal` appends the SHA-256 of a file, where HDF5 does not read; `check_seal` refuses a file that
+does not match it. The seal has no key: it detects damage, not forgery.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _LENGTH = len(_MARK) + 64
 
 
 def seal(path: Path) -> None:
-    """Put a file's SHA-256 behind its end."""
+    """Append a file's SHA-256 to it."""
     with path.open("r+b") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
         file.seek(0, os.SEEK_END)
@@ -26,7 +26,7 @@ def seal(path: Path) -> None:
 
 
 def unseal(path: Path) -> None:
-    """Take the seal off, before the file is changed."""
+    """Remove the seal before the file is changed."""
     with path.open("r+b") as file:
         size = file.seek(0, os.SEEK_END)
         if size > _LENGTH:
@@ -36,13 +36,13 @@ def unseal(path: Path) -> None:
 
 
 def carries_seal(path: Path) -> bool:
-    """Whether a file ends in a seal, as what tribolab writes."""
+    """Whether a file ends with a seal."""
     with path.open("rb") as file:
         return bool(_mark_of(file)[1])
 
 
 def _mark_of(file: BinaryIO) -> tuple[int, bytes]:
-    """Return the size of what is sealed, and the seal; b"" if there is none."""
+    """Return the size of the sealed content, and the seal; b"" without one."""
     left = file.seek(0, os.SEEK_END) - _LENGTH
     if left < 0:
         return 0, b""
@@ -52,9 +52,9 @@ def _mark_of(file: BinaryIO) -> tuple[int, bytes]:
 
 
 def check_seal(path: Path) -> None:
-    """Refuse a file that carries a seal and is not what it was when it was sealed.
+    """Raise if a file does not match its seal.
 
-    A file without a seal, as other programs write it, passes.
+    Files without a seal, e.g. of other programs, are accepted.
 
     Raises
     ------

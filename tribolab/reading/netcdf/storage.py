@@ -1,7 +1,7 @@
-"""Datasets into an open netCDF file: first all is defined, then all is written.
+"""Writing of datasets into an open netCDF file: first all definitions, then all data.
 
-The library writes the definitions to the disk whenever data follow them: variable by variable
-that costs more than the bytes of a run.
+The library writes the definitions to the disk whenever data follow them; variable by variable that
+takes longer than writing the bytes of a run.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ if TYPE_CHECKING:
     import netCDF4
 
 CHUNK = 65_536  # samples; a default chunk would be the whole array
-_LONG = 1024  # values; what is shorter is stored as it is
-_COMPRESSION = 1  # noise does not become smaller by trying harder
-_WORTH = 0.95  # of the bytes; what stays longer is not worth the time that reading it back takes
-_BLOCKS, _BLOCK = 4, 1024  # samples that are tried: how many pieces, how long
-_PIECE = 16 * CHUNK  # samples that are handed to the library at once: it copies them
-_CACHE = 1 << 20  # bytes that the library keeps for a variable; whole chunks need no more
-# What xarray understands as an order rather than as a note.
-COORDINATES = "coordinates"  # attribute that names the variables that are coordinates
+_LONG = 1024  # values; shorter arrays are not compressed
+_COMPRESSION = 1  # higher levels do not reduce noise
+_WORTH = 0.95  # compressed share of the bytes above which compression is not worthwhile
+_BLOCKS, _BLOCK = 4, 1024  # number and length of the samples for choosing a filter
+_PIECE = 16 * CHUNK  # samples passed to the library at once, as it copies them
+_CACHE = 1 << 20  # bytes that the library caches per variable; enough for whole chunks
+# attributes that xarray interprets
+COORDINATES = "coordinates"  # attribute with the names of coordinate variables
 ORDERS = {"_FillValue", "missing_value", "scale_factor", "add_offset", COORDINATES, "dtype"}
 ORDERS |= {"_Unsigned", "_Encoding"}
 
 
 def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -> None:
-    """Write datasets as groups of a file that is open for writing; None stands for the root.
+    """Write datasets as groups of a file that is open for writing; None is the root.
 
     Parameters
     ----------
@@ -45,14 +45,14 @@ def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -
 
     Notes
     -----
-    xarray reads back what it would have read had it written itself. What is rare in results
-    (truth values, dates, a group that is there already) is left to it.
+    xarray reads the same as from a file written by itself. Rare types (truth values, dates, an
+    existing group) are written by xarray.
     """
     waiting: list[tuple[netCDF4.Variable[Any], np.ndarray]] = []
     left: dict[str | None, xr.Dataset] = {}
     for name, data in groups.items():
         fresh = name not in file.groups if name else not (file.variables or file.dimensions)
-        if fresh and all(_common(str(key), v) for key, v in data.variables.items()):
+        if fresh and all(_has_common_type(str(key), v) for key, v in data.variables.items()):
             waiting += _define(file.createGroup(name) if name else file, data)
         else:
             left[name] = data
@@ -89,13 +89,13 @@ def _define(
     return waiting
 
 
-def _common(name: str, variable: xr.Variable) -> bool:
-    """Whether a variable is of the kinds that results are made of: numbers and text."""
+def _has_common_type(name: str, variable: xr.Variable) -> bool:
+    """Whether a variable has a common type: numbers or text."""
     if "/" in name or any("/" in str(dim) for dim in variable.dims):
         return False
     if not ORDERS.isdisjoint(variable.attrs):
         return False
-    if variable.dtype.kind == "O":  # of what an empty one holds xarray has an opinion of its own
+    if variable.dtype.kind == "O":  # xarray has special rules for empty object arrays
         return variable.size > 0 and all(isinstance(value, str) for value in variable.values.flat)
     return variable.dtype.kind in "fiuU"
 
@@ -112,13 +112,13 @@ def _by_xarray(file: netCDF4.Dataset, group: str | None, data: xr.Dataset) -> No
 
 
 def storage(values: np.ndarray) -> Arguments:
-    """Say how an array is stored: chunks and filters as netCDF4 takes them; none if it is short.
+    """Return chunks and filters for storing an array with netCDF4; empty for a short one.
 
     Notes
     -----
-    A signal from a converter has few distinct values, each eight bytes that come again and again:
-    zlib finds them as they stand, and not once the bytes are shuffled. A smooth signal is the
-    other way round, and the noise of a computed one does neither. Some samples of the array tell.
+    A digitised signal has few distinct values of eight bytes, whose repetition zlib finds only
+    without shuffling. A smooth signal is better shuffled, and noise is hardly compressible. The
+    choice is made from some samples of the array.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def storage(values: np.ndarray) -> Arguments:
 
 
 def _sample(values: np.ndarray) -> np.ndarray:
-    """Bytes (sample, byte of the number) of a few pieces of an array."""
+    """Return the bytes (sample, byte of the number) of a few pieces of an array."""
     flat = values.reshape(-1)
     starts = np.linspace(0, max(0, flat.size - _BLOCK), _BLOCKS).astype(int)
     if flat.size > _BLOCKS * _BLOCK:

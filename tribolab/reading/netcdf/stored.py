@@ -1,7 +1,7 @@
-"""Groups of an open netCDF file as datasets: what `netcdf.storage` writes, read directly.
+"""Fast reading of groups of an open netCDF file written by `netcdf.storage`.
 
-xarray opens every variable as one that may be lazy, scaled, dated, or made of characters. Of the
-hundred variables of a run, most of them of a few values, that costs more than reading them.
+xarray prepares every variable for lazy loading, scaling, dates and characters. For the hundred
+mostly short variables of a run, that takes longer than reading them.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ _ORDERS = ORDERS - {COORDINATES} | {"least_significant_digit"}
 
 
 def read_plain(group: netCDF4.Dataset, only: Collection[str] | None = None) -> xr.Dataset | None:
-    """Read a group of an open file, if it holds short arrays of numbers and text alone.
+    """Read a group of an open file, if it contains only short arrays of numbers and text.
 
     Parameters
     ----------
     group
         The group, or the file for its root.
     only
-        Variables that are read, with the coordinates on their dims; None reads all.
+        Variables to read, with the coordinates on their dims; None reads all.
 
     Returns
     -------
     xarray.Dataset or None
-        What xarray would read, without undoing scales and dates; None where there is more to it,
-        or an array is long.
+        The same as xarray would read without decoding; None if decoding is needed or an array is
+        long.
     """
     attrs = group.__dict__
     names = [name for name in group.variables if only is None or name in only]
@@ -51,7 +51,7 @@ def read_plain(group: netCDF4.Dataset, only: Collection[str] | None = None) -> x
             noted[name].pop(COORDINATES, None)
     if not all(_is_plain(group.variables[name], its) for name, its in noted.items()):
         return None
-    # as xarray has it: coordinates last
+    # coordinates last, as in xarray
     names = sorted((n for n in group.variables if n in noted), key=lambda name: name in beside)
     read = {name: _read(group.variables[name], noted[name]) for name in names}
     data = xr.Dataset(read, attrs=decoded(attrs))
@@ -62,7 +62,7 @@ def _is_plain(stored: netCDF4.Variable[Any], attrs: Json) -> bool:
     if is_long(stored.size) or not _ORDERS.isdisjoint(attrs):
         return False
     kind = stored.datatype
-    if stored.dtype is str:  # of what an empty one holds xarray has an opinion of its own
+    if stored.dtype is str:  # xarray has special rules for empty object arrays
         return stored.size > 0
     return isinstance(kind, np.dtype) and kind.kind in "fiu" and kind.isnative
 

@@ -1,4 +1,4 @@
-"""Check data against a Table Schema: what a run or a scan must look like, as a file says it."""
+"""Validation of data against a Table Schema of a run or scan."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _TYPES = {"number": "fiub", "integer": "fiub", "boolean": "b", "string": "OUST"}
 
 
 def load_schema(schema: str | Path | Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a Table Schema: ``"run"``, ``"scan"``, a JSON file of your own, or what it holds.
+    """Return a Table Schema: ``"run"``, ``"scan"``, a JSON file, or its content.
 
     Raises
     ------
     ConfigError
-        If there is no such schema, or it says something that cannot be checked.
+        If the schema does not exist, or contains a rule that cannot be checked.
 
     Examples
     --------
@@ -57,21 +57,21 @@ def validate(
     Parameters
     ----------
     data
-        A run or scan as it was read, or a table in SI. Columns that the schema does not know are
-        passed over, as are those of the schema that the data need not have.
+        Run or scan as read, or a table in SI. Columns unknown to the schema, and its optional
+        columns, are ignored.
     schema
         As for `load_schema`.
 
     Returns
     -------
     Violations
-        Every value that breaks a rule, with row, column, value and limit; false if there is none.
-        In data of several dims the row is the place in the order in which the values lie.
+        Every value that violates a rule, with row, column, value and limit; false without any. In
+        data of several dims the row is the position in the flattened array.
 
     Raises
     ------
     ConfigError
-        If there is no such schema, or it says something that cannot be checked.
+        If the schema does not exist, or contains a rule that cannot be checked.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def validate(
 
 
 def _column(data: xr.Dataset | pd.DataFrame, name: str) -> tuple[np.ndarray | None, str | None]:
-    """Values of a column, and the unit that is stated of it."""
+    """Return the values of a column, and its stated unit."""
     if isinstance(data, xr.Dataset):
         if name not in data.variables:
             return None, None
@@ -154,7 +154,7 @@ def _field_broken(
 
 
 def _as_numbers(values: np.ndarray, empty: frozenset[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers where there are some; which of the others are no missing value either."""
+    """Return values as numbers, and a mask of those that are neither numbers nor missing."""
     numbers = pd.to_numeric(pd.Series(values), errors="coerce").to_numpy()
     none = pd.isna(values) | np.isin(values.astype(str), list(empty))
     odd = np.isnan(numbers) & ~none
@@ -166,11 +166,11 @@ def _are_whole(values: np.ndarray) -> bool:
 
 
 def _below(limit_of: Callable[[np.ndarray], Any], wrong: Callable[..., Any]) -> Callable[..., Any]:
-    """Compare the extreme first: most data keep within the limits, and then one pass is enough."""
+    """Return a check that compares the extreme first, as most data are within the limits."""
 
     def check(values: np.ndarray, limit: Any, _: frozenset[str]) -> np.ndarray | None:
         if values.dtype.kind == "f" and values.size:
-            extreme = limit_of(values)  # NaN is passed over
+            extreme = limit_of(values)  # NaN is ignored
             if not wrong(extreme, limit):
                 return None
         return wrong(values, limit)

@@ -1,1 +1,1 @@
-"""Delimited text read by its dialect, block by block."""
+"""Reading of delimited text with a dialect, block by block."""

@@ -1,4 +1,4 @@
-"""Arrays that grow as the blocks of a table come in."""
+"""Arrays that grow while the blocks of a table are read."""
 
 from __future__ import annotations
 
@@ -8,23 +8,24 @@ import pyarrow as pa
 from tribolab.arrays.scratch import is_long, let_go, room
 from tribolab.reading.dialect.columns import ReadColumn
 
-_FEW = 5  # lines that tell that each other one is empty
+_FEW = 5  # lines needed to recognise that every second one is empty
 
 
 class GrowingColumns:
-    """Arrays that grow as blocks come in; each number is brought to SI as it is stored.
+    """Arrays that grow block by block; numbers are converted to SI when stored.
 
-    `size` is the table's bytes, in so many `blocks`; `of` is the bytes of all tables of the run.
+    `size` is the number of bytes of the table, in `blocks` blocks; `of` that of all tables of the
+    run.
     """
 
     def __init__(self, signals: list[ReadColumn], size: int, of: int, blocks: int):
         self._signals, self._size, self._blocks = signals, size, blocks
-        self._parts = max(1.0, of / max(size, 1))  # of the run, of this one's size
+        self._parts = max(1.0, of / max(size, 1))  # ratio of the run's size to this table's size
         self._arrays: list[np.ndarray] = []
         self._used = 0
 
     def take(self, pieces: list[list[np.ndarray]]) -> None:
-        """Append one block's pieces."""
+        """Append the pieces of one block."""
         rows = sum(len(piece) for piece in pieces[0])
         if rows == 0:
             return
@@ -33,7 +34,7 @@ class GrowingColumns:
             at = self._used
             for chunk in chunks:
                 target = array[at : at + len(chunk)]
-                with np.errstate(over="ignore"):  # a damaged number may be beyond all numbers
+                with np.errstate(over="ignore"):  # a damaged number may overflow
                     if signal.scale == 1.0:
                         target[:] = chunk
                     else:
@@ -46,7 +47,7 @@ class GrowingColumns:
 
     def _make_room(self, rows: int) -> None:
         if not self._arrays:
-            # what is allocated but never touched takes no memory, so guess high
+            # allocated memory that is never used costs nothing, so the guess is high
             guess = max(rows, min(rows * (self._blocks + 2), self._size // 2 + 1))
             self._arrays = [self._room(guess) for _ in self._signals]
         if self._used + rows > len(self._arrays[0]):
@@ -56,16 +57,15 @@ class GrowingColumns:
                 let_go()
 
     def _room(self, rows: int) -> np.ndarray:
-        """Return an array for that many rows: of a long run in a scratch file, else of arrow's.
+        """Return an array of that many rows: in a scratch file for a long run, else from arrow.
 
-        Numpy's asks for huge pages, and where memory is in many pieces the system first clears
-        them.
+        Numpy requests huge pages, which the system first clears if memory is fragmented.
         """
         of = int(rows * self._parts)
         return room(rows, of=of) if is_long(of) else np.frombuffer(pa.allocate_buffer(8 * rows))
 
     def finished(self) -> dict[str, np.ndarray]:
-        """Arrays by quantity, cut to the rows that came."""
+        """Return arrays by quantity, cut to the rows that were read."""
         arrays = self._arrays or [np.empty(0) for _ in self._signals]
         return {
             s.quantity: array[: self._used] for s, array in zip(self._signals, arrays, strict=True)
@@ -73,7 +73,7 @@ class GrowingColumns:
 
 
 def of_one_column(values: np.ndarray) -> np.ndarray:
-    """Return the values of a column on its own, without empty lines about it or after each line.
+    """Return the values of a single column without empty lines around it or after each line.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def of_one_column(values: np.ndarray) -> np.ndarray:
 
 
 def _scaled(numbers: np.ndarray, scale: float, out: np.ndarray) -> None:
-    """Multiply so that 49.703 mm is 0.049703 m: dividing by 1000 rounds once, times 0.001 twice."""
+    """Multiply so that 49.703 mm is exactly 0.049703 m: division by 1000 rounds only once."""
     inverse = 1.0 / scale
     if abs(inverse) > 1.0 and abs(inverse - round(inverse)) < 1e-12 * abs(inverse):
         np.divide(numbers, float(round(inverse)), out=out)

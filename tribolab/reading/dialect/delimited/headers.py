@@ -1,4 +1,4 @@
-"""Headers of delimited text: where they stand, and what they say of the columns."""
+"""Headers of delimited text: their position, names and units."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tribolab.reading.text.first_bytes import File
 
 BOM = b"\xef\xbb\xbf"
 _CLASS = re.compile(r"(?<!\\)\[")
-LONGEST_LINE = 4 << 20  # bytes: some 300 000 columns; what is longer is no row of a table
+LONGEST_LINE = 4 << 20  # bytes, some 300 000 columns; longer lines are not rows of a table
 
 
 def header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> list[int]:
@@ -25,7 +25,7 @@ def header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> l
     first = 3 if content[:3] == BOM else 0
     if header.pattern is not None:
         matches = compiled(header.pattern, dialect).all(content, first)
-        wanted = None if header.repeats else 1  # looking for more would read the whole head
+        wanted = None if header.repeats else 1  # more headers would require reading the whole head
         starts = [
             max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in islice(matches, wanted)
         ]
@@ -62,7 +62,7 @@ def read_header(
     if header.units == "row":
         for _ in range(header.units_line):
             line, here = line_at(file, content, here, dialect)
-        while not line.strip() and here < len(content):  # nothing but delimiters, or nothing
+        while not line.strip() and here < len(content):  # only delimiters, or empty
             line, here = line_at(file, content, here, dialect)
         row = [unit.strip("[]() ") or None for unit in split_row(line, delimiter)]
         units = tuple((row + [None] * len(names))[: len(names)])
@@ -71,11 +71,11 @@ def read_header(
     return here, names, units
 
 
-@functools.lru_cache(maxsize=2)  # a dozen dialects look at the same header, one after the other
+@functools.lru_cache(maxsize=2)  # a dozen dialects inspect the same header in turn
 def _columns(
     line: str, delimiter: str, brackets: bool
 ) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
-    """Names of the columns in a header's line, and their units if these stand in brackets."""
+    """Return the names of the columns in a header line, and units in brackets."""
     cells = split_row(line, delimiter)
     if not brackets:
         return tuple(cells), (None,) * len(cells)
@@ -86,20 +86,21 @@ def _columns(
 def parted_as_numbers(
     names: tuple[str, ...], units: tuple[str | None, ...], width: int, dialect: Dialect
 ) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
-    """Return names and units of a header that blanks part otherwise than they part its numbers.
+    """Return names and units of a header in which blanks also separate words of one name.
 
     Parameters
     ----------
     names, units
-        As the delimiter parts them.
+        Names and units as separated by the delimiter.
     width
-        How many numbers stand in a row.
+        Number of columns in a row of numbers.
     dialect
-        The instrument's: only where it tells its columns by their place names may be wrong.
+        The dialect: names may be wrong only if it identifies columns by position.
 
     Notes
     -----
-    Units in brackets belong to the names before them; what still fits no row names nothing.
+    Units in brackets belong to the names before them. If the numbers still differ, there are no
+    names.
     """
     fits = len(names) == width or dialect.text.delimiter != "whitespace"
     if fits or any(column.position is None for column in dialect.column):
@@ -130,7 +131,7 @@ def line_at(
 
 
 def endless(line: int) -> str:
-    """Say that a line is longer than any row of a table."""
+    """Return the error message for a line that is longer than any table row."""
     return (
         f"line {line} is longer than {LONGEST_LINE >> 20} MB, as no row of a table is; "
         "export the file with line ends"
@@ -138,12 +139,12 @@ def endless(line: int) -> str:
 
 
 def table_encoding(dialect: Dialect) -> str:
-    """Return the encoding of what is looked at: some text is mended to UTF-8."""
+    """Return the encoding of the text to parse, which may have been converted to UTF-8."""
     return "utf-8" if is_wide(dialect) else dialect.text.encoding
 
 
 def is_wide(dialect: Dialect) -> bool:
-    """Whether text is converted to UTF-8: wide letters, or missing words with other letters."""
+    """Whether text is converted to UTF-8: UTF-16 or 32, or missing words with non-ASCII letters."""
     encoding = dialect.text.encoding.lower().replace("_", "-")
     words = not all(word.isascii() for word in dialect.text.missing)
     plain = encoding.startswith(("utf-8", "ascii"))
@@ -151,23 +152,23 @@ def is_wide(dialect: Dialect) -> bool:
 
 
 def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
-    """Return a pattern for lines of raw bytes: ``$`` also stands before CR LF."""
-    # behind "\s*", a second wish for blanks would take a time that grows with their number squared
+    """Return a pattern for lines of raw bytes: ``$`` also matches before CR LF."""
+    # after "\s*", another repetition of blanks would take quadratic time
     if dialect.text.delimiter == "whitespace" and not _CLASS.search(pattern):
-        pattern = re.sub(" +", r"[\\t ]+", pattern)  # tabs stand for blanks by now, see `mended`
+        pattern = re.sub(" +", r"[\\t ]+", pattern)  # blanks were replaced by tabs, see `mended`
     if pattern.endswith("$") and not pattern.endswith((r"\$", r"\s*$")):
         pattern = pattern[:-1] + r"[ \t\r]*$"
     return Guarded(_as_bytes(pattern, table_encoding(dialect)))
 
 
 def _as_bytes(pattern: str, encoding: str) -> bytes:
-    """Return a pattern for bytes: the second byte of a letter may be a sign of patterns.
+    """Return a pattern for bytes, in which a letter's second byte may be a special character.
 
     >>> re.search(_as_bytes("^[ ]*\u30fc+$", "cp932"), "  \u30fc".encode("cp932")) is not None
     True
     """
     parts = []
-    inside = escaped = False  # of a class of letters; behind a backslash
+    inside = escaped = False  # within a character class; after a backslash
     for sign in pattern:
         code = sign.encode(encoding, errors="replace")
         plain = sign.isascii() or inside or len(code) == 1

@@ -1,4 +1,4 @@
-"""Text that cannot be parsed as it lies on disk, made such as can be: ends of lines, numbers."""
+"""Normalisation of text that the parser cannot read directly: line ends, encoding, numbers."""
 
 from __future__ import annotations
 
@@ -20,20 +20,22 @@ from tribolab.reading.text.first_bytes import File
 from tribolab.reading.text.number_spelling import is_unusual, usual, without_commas_in_quotes
 from tribolab.reading.text.thousands import without_thousands
 
-_ODD_ENDS = 3  # a line end that went through two programs is CR CR LF; more were not seen
+_ODD_ENDS = 3  # a line end converted twice is CR CR LF; longer ones are unknown
 
 
 def mended(file: File, dialect: Dialect, head_only: bool) -> bytes | None:
-    """Return the whole content (or head) such as can be parsed; None if it can as it lies."""
-    memory = _with_usual_lines(file, dialect, head_only)
+    """Return the normalised content (or head); None if the file can be parsed directly."""
+    memory = _normalise_lines(file, dialect, head_only)
     if not head_only:
-        memory = _without_lines(file, memory, dialect)
-    respell = _respelling(dialect, file.head)
-    return memory if respell is None else _respelt(file, memory, dialect, respell, head_only)
+        memory = _skip_lines(file, memory, dialect)
+    respell = _number_normaliser(dialect, file.head)
+    return (
+        memory if respell is None else _normalise_numbers(file, memory, dialect, respell, head_only)
+    )
 
 
-def _with_usual_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | None:
-    """Whole content as UTF-8 with LF, where line ends or encoding forbid reading it as it lies."""
+def _normalise_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | None:
+    """Return the content as UTF-8 with LF; None if encoding and line ends are usable."""
     head = file.head
     wide = is_wide(dialect) or head.startswith((b"\xff\xfe", b"\xfe\xff"))
     odd_ends = b"\r" in head and re.search(rb"\r(?!\n)", head[:-1]) is not None
@@ -49,11 +51,11 @@ def _with_usual_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | 
     except (OSError, UnicodeDecodeError) as error:
         raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
     content = line_feeds(content)
-    return _tabbed(content) if spaced else content
+    return _tabs_for_blanks(content) if spaced else content
 
 
 def line_feeds(content: AnyStr) -> AnyStr:
-    r"""Return text or bytes with LF at the end of each line, whatever stood there.
+    r"""Return text or bytes with LF instead of any other line end.
 
     Examples
     --------
@@ -66,10 +68,10 @@ def line_feeds(content: AnyStr) -> AnyStr:
     return content.replace(cr, lf)
 
 
-def _tabbed(content: bytes) -> bytes:
-    """Put one tab between the cells of a line and none around them, whatever blanks there were.
+def _tabs_for_blanks(content: bytes) -> bytes:
+    """Replace blanks between the cells of a line by one tab, and remove those around them.
 
-    Patterns would take a time that grows with the square of a row of blanks.
+    Regular expressions would take quadratic time for a row of blanks.
     """
     content = content.replace(b" ", b"\t")
     while b"\t\t" in content:
@@ -78,8 +80,8 @@ def _tabbed(content: bytes) -> bytes:
     return content.removeprefix(b"\t").removesuffix(b"\t")
 
 
-def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | None:
-    """Whole content without the lines below the first header that are to be passed over."""
+def _skip_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | None:
+    """Return the content without the lines below the first header that the dialect skips."""
     if dialect.text.skip_lines is None:
         return content
     try:
@@ -100,8 +102,8 @@ def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes
     )
 
 
-def _respelling(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
-    """Return what makes a table's numbers such as the parser reads; None where they are."""
+def _number_normaliser(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
+    """Return a function that normalises a table's numbers; None if they are already readable."""
     text = dialect.text
     steps: list[Callable[[str], str]] = []
     if text.thousands:
@@ -115,19 +117,19 @@ def _respelling(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
     return lambda table: functools.reduce(lambda so_far, step: step(so_far), steps, table)
 
 
-@functools.lru_cache(maxsize=4)  # dozens of dialects look at the same head, one after the other
+@functools.lru_cache(maxsize=4)  # dozens of dialects inspect the same head in turn
 def _is_unusual(head: bytes, encoding: str) -> bool:
     return is_unusual(head.decode(encoding, errors="replace"))
 
 
-def _respelt(
+def _normalise_numbers(
     file: File,
     content: bytes | None,
     dialect: Dialect,
     respell: Callable[[str], str],
     head_only: bool,
 ) -> bytes:
-    """Content whose table's numbers are written as the parser reads them; the text before stays."""
+    """Return the content with normalised numbers in the table; the preamble is unchanged."""
     if content is None:
         try:
             content = file.head if head_only else file.path.read_bytes()

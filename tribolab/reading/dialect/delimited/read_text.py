@@ -1,4 +1,4 @@
-"""Delimited text into float64 arrays, block by block: memory stays near that of the result."""
+"""Reading of delimited text into float64 arrays, block by block, with little extra memory."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ from tribolab.reading.dialect.delimited.rows import RowParser
 from tribolab.reading.dialect.delimited.tables import RawText, TextTable
 from tribolab.reading.dialect.model import Dialect
 
-_BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
+_BLOCK = 4 << 20  # bytes; small blocks reuse memory, but each costs arrow a thread
 _WORKERS = 2
 _DEPTH = 4  # blocks in work or waiting, so that no worker is idle while one is stored
 
 
 class Hasher:
-    """SHA-256 of a file, taken in a thread of its own from the bytes that are parsed anyway."""
+    """SHA-256 of a file, computed in a separate thread from the bytes being parsed."""
 
     def __init__(self) -> None:
         self._digest = hashlib.sha256()
         self._thread = ThreadPoolExecutor(1)
 
     def update(self, data: bytes | memoryview) -> Future[None]:
-        """Add bytes; they may be overwritten when the future is done."""
+        """Add bytes; they may be overwritten after the future is done."""
         return self._thread.submit(self._digest.update, data)
 
     def hexdigest(self) -> str:
-        """Return the sum of all that was added."""
+        """Return the checksum of all added bytes."""
         self._thread.shutdown(wait=True)
         return self._digest.hexdigest()
 
 
 class _Work(NamedTuple):
-    """A block in work: its buffer is used again when both are done."""
+    """Block in work; its buffer is reused when both futures are done."""
 
     buffer: bytearray
     parsed: Future[list[list[np.ndarray]]]
@@ -65,9 +65,9 @@ def read_table(
     signals
         The columns to read.
     dialect
-        How the numbers are written.
+        Format of the numbers.
     hasher
-        Given every byte of the file in passing, those around the table too.
+        Receives every byte of the file, including those outside the table.
     size
         Bytes of all tables of the run, if it has more than this one.
 
@@ -80,7 +80,7 @@ def read_table(
     Raises
     ------
     ReadError
-        If a cell is no number or a row has the wrong number of cells.
+        If a cell is not a number or a row has the wrong number of cells.
     """
     parser = RowParser(raw, table, signals, dialect)
     long = table.stop - table.start
@@ -112,10 +112,10 @@ def _pump(
     workers: ThreadPoolExecutor,
     hasher: Hasher | None,
 ) -> None:
-    """Pass a table on in blocks of whole lines, in a few buffers that are used in turn."""
+    """Feed a table to the parser in blocks of whole lines, with a few reused buffers."""
     file.seek(table.start)
     place, left, rest = table.start, table.stop - table.start, b""
-    block = min(_BLOCK, left // _WORKERS + 1)  # a small table is shared between the workers too
+    block = min(_BLOCK, left // _WORKERS + 1)  # a small table is also shared between the workers
     free: list[bytearray] = []
     waiting: deque[_Work] = deque()
 

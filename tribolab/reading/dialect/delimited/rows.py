@@ -1,4 +1,4 @@
-"""Blocks of a table's lines into numbers, and what is wrong with a line that holds none."""
+"""Parsing of blocks of lines into numbers, and diagnosis of invalid lines."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tribolab.reading.dialect.delimited.tables import RawText, TextTable
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.dates import seconds
 
-_ONE_PIECE = 1 << 20  # arrow's own block: its intermediate results stay in the cache
-_BLANK = ["", " ", "  ", "   "]  # arrow takes no blanks off
+_ONE_PIECE = 1 << 20  # arrow's default block, whose intermediate results fit in the cache
+_BLANK = ["", " ", "  ", "   "]  # arrow does not strip blanks
 _NO_VALUE = ["", "nan", "NaN", "NAN", "-nan", "null", "NULL", "N/A", "n/a", "NA", "--"]
 
 
 class RowParser:
-    """Turns blocks of lines into arrow tables, and arrow's complaints into ours."""
+    """Parser of blocks of lines into arrow tables, with readable errors."""
 
     def __init__(self, raw: RawText, table: TextTable, signals: list[ReadColumn], dialect: Dialect):
         self._raw, self._table, self._signals, self._dialect = raw, table, signals, dialect
@@ -32,7 +32,7 @@ class RowParser:
         self.incomplete = 0
         self._parse: Arguments = {
             "delimiter": "\t" if delimiter == "whitespace" else delimiter,
-            # of a single column the place is told by counting: an empty line is a missing value
+            # in a single column, empty lines are missing values
             "ignore_empty_lines": table.width > 1,
         }
         self._read = arrow_csv.ReadOptions(
@@ -46,11 +46,11 @@ class RowParser:
         }
 
     def parse(self, view: memoryview, place: int, last: bool) -> list[list[np.ndarray]]:
-        """Numbers of one block: for each signal its pieces, still in the file's unit."""
+        """Return the numbers of one block: pieces by signal, in the file's units."""
         types = {
             name: pa.string() if name in self._dates else pa.float64() for name in self._wanted
         }
-        if not view:  # a line longer than a block: it goes on in the next
+        if not view:  # a line longer than a block continues in the next
             return [[] for _ in self._wanted]
         try:
             table = self._arrow(view, types)
@@ -61,7 +61,7 @@ class RowParser:
         ]
 
     def _numbers(self, name: str, cells: pa.Array) -> np.ndarray:
-        """Cells as numbers; dates and times as seconds."""
+        """Return cells as numbers; dates and times as seconds."""
         if name not in self._dates:
             return floats_of(cells)
         form = str(self._dialect.time.format)
@@ -77,8 +77,8 @@ class RowParser:
 
     def _arrow(self, block: bytes | memoryview, types: Arguments) -> pa.Table:
         held = block.obj if isinstance(block, memoryview) else block
-        assert isinstance(held, bytes | bytearray)  # who calls passes views of whole buffers
-        # arrow is faster where it need not look for quotes
+        assert isinstance(held, bytes | bytearray)  # callers pass views of whole buffers
+        # arrow is faster without quotes
         quote = '"' if held.find(b'"', 0, len(block)) >= 0 else False
         return arrow_csv.read_csv(
             pa.BufferReader(pa.py_buffer(block)),
@@ -90,9 +90,9 @@ class RowParser:
     def _second_try(
         self, block: bytes, place: int, last: bool, types: Arguments, error: Exception
     ) -> pa.Table:
-        """Leave out a file's last row if the logger was stopped in it; else say what is wrong.
+        """Parse again without an incomplete last row; else raise with a diagnosis.
 
-        Delimiters too many at the end of a row, as beside a comment, are taken off.
+        Superfluous delimiters at the end of rows, e.g. beside a comment, are removed.
         """
         if (tidy := self._without_surplus(block)) != block:
             try:
@@ -124,19 +124,19 @@ class RowParser:
         return b"\n".join(lines)
 
     def endless(self, place: int) -> ReadError:
-        """Return the error for a line that does not end; it starts at an offset."""
+        """Return the error for an endless line that starts at an offset."""
         return ReadError(endless(self._lines_before(place) + 1), where=self._raw.file.path)
 
     def _cells(self, line: bytes) -> int:
         return line.count(self._parse["delimiter"].encode()) + 1
 
     def _diagnosis(self, block: bytes, place: int) -> str:
-        """Name the first line of a block that cannot be read."""
+        """Return a message on the first invalid line of a block."""
         path = self._raw.file.path
         before = self._lines_before(place)
         lines = block.decode("utf-8", errors="replace").splitlines()
         delimiter, missing = self._parse["delimiter"], {*_NO_VALUE, *self._convert["null_values"]}
-        is_table = place > self._table.start  # else what it holds is not told: it may be anything
+        is_table = place > self._table.start  # otherwise its content is not quoted
         for number, line in enumerate(lines):
             if not line.strip():
                 continue
@@ -185,9 +185,9 @@ def _is_number(cell: str, decimal: str) -> bool:
 
 
 def floats_of(cells: pa.Array) -> np.ndarray:
-    """Return an arrow array of float64 as it lies in memory, with NaN where there is no value.
+    """Return an arrow array of float64 as numpy array, with NaN for missing values.
 
-    Arrow's own way loads pandas, which takes longer than a file of 5 MB to read.
+    Arrow's conversion loads pandas, which takes longer than reading a file of 5 MB.
 
     >>> floats_of(pa.array([0.5, None, 2.5])[1:]).tolist()
     [nan, 2.5]

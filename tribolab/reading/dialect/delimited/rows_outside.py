@@ -1,4 +1,4 @@
-"""What stands in a text file outside of the tables that are read: rows of numbers, a foot."""
+"""Text outside the tables that are read: rows of numbers, and the text below."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tribolab.reading.dialect.delimited.tables import RawText
 from tribolab.reading.dialect.model import Dialect
 
 _LONGEST_FOOT = 1 << 16  # bytes
-# a line that begins with a number and holds neither words nor times of day nor dates
+# line that begins with a number and contains no words, times of day or dates
 _NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTILINE)
 
 
@@ -21,17 +21,17 @@ def rows_outside(raw: RawText, delimiter: str) -> int:
     raw
         The file and its tables, from `tribolab.reading.dialect.delimited.tables.find_tables`.
     delimiter
-        As the dialect says it.
+        Delimiter of the dialect.
 
     Notes
     -----
-    A row has at least two cells, and between half and twice as many as the tables have columns:
-    few numbers beside one another are settings or results.
+    A row has at least two cells, and between half and twice as many as the tables have columns; a
+    few numbers in a line are settings or results.
 
     Raises
     ------
     ReadError
-        If the file cannot be read any more.
+        If the file can no longer be read.
     """
     tables = raw.tables
     size = raw.file.size if raw.memory is None else len(raw.memory)
@@ -43,7 +43,7 @@ def rows_outside(raw: RawText, delimiter: str) -> int:
 
 
 def foot_of(raw: RawText, dialect: Dialect) -> str:
-    """Return the text below the last table of a file, of a long one its end.
+    """Return the text below the last table of a file; only the end of a long text.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def foot_of(raw: RawText, dialect: Dialect) -> str:
     Raises
     ------
     ReadError
-        If the file cannot be read any more.
+        If the file can no longer be read.
     """
     size = raw.file.size if raw.memory is None else len(raw.memory)
     stop = raw.tables[-1].stop

@@ -1,4 +1,4 @@
-"""Delimited text: where its tables start and end."""
+"""Start and end of the tables in delimited text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import File, peek
 
-# one class of letters: a repeated group would take sixty bytes of memory for each line
+# one character class: a repeated group would take 60 bytes of memory per line
 _BLANK = re.compile(rb"(?:[ \t\r\n]*\n)?")
 
 
@@ -39,7 +39,7 @@ class TextTable(NamedTuple):
 
 
 class RawText(NamedTuple):
-    """A text file on disk, or its content in memory if its line ends had to be mended."""
+    """Text file on disk, or its content in memory if it had to be normalised."""
 
     file: File
     memory: bytes | None
@@ -59,14 +59,14 @@ def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = 
     path
         The file.
     dialect
-        How the file is written.
+        Format of the file.
     head_only
-        Whether its first megabyte is enough, as it is to recognise a file.
+        Whether to use only the first megabyte, which suffices to recognise a file.
 
     Raises
     ------
     ReadError
-        If there is no header where the dialect expects it, or nothing stands below it.
+        If the expected header is missing, or has no rows below it.
     """
     file = path if isinstance(path, File) else peek(path)
     memory = mended(file, dialect, head_only)
@@ -82,7 +82,7 @@ def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = 
 
 
 def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -> list[TextTable]:
-    """Tables in `content`, the start of (or the whole of) a file of `size` bytes."""
+    """Return the tables in `content`, the start (or all) of a file of `size` bytes."""
     header, text = dialect.header, dialect.text
     starts = header_starts(file, content, dialect)
     end = compiled(text.end, dialect) if text.end else None
@@ -112,7 +112,7 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
 
 
 def _width(file: File, content: bytes | mmap.mmap, body: int, dialect: Dialect) -> int:
-    """Return the number of cells of a row: of the first one without delimiters too many."""
+    """Return the number of cells of a row, without superfluous delimiters in the first one."""
     first, below = line_at(file, content, body, dialect)
     cells = split_row(first, dialect.text.delimiter)
     if cells[-1] or below >= len(content):
