@@ -1,1 +1,1 @@
-"""Files as they are: opened safely, and returned as tables of numbers and texts."""
+"""Safe reading of raw files as tables of numbers and texts."""

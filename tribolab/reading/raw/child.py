@@ -1,4 +1,4 @@
-"""The process that reads containers: a server without threads, and its copies, one a file."""
+"""Process that reads containers: a server without threads, and a copy of it for each file."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from tribolab.reading.raw.unpacked import ZIP
 from tribolab.reading.raw.zip_safety import refuse_bomb
 
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE = 0, 3, 4, 5
-_TEXT_PER_NUMBER = 4  # a cell as text is longer than a number
-_PIPE = 1 << 15  # bytes of names of modules
-_POLL = 0.01  # s between looks at a child, where the system cannot wait for one
+_TEXT_PER_NUMBER = 4  # text cells are longer than numbers
+_PIPE = 1 << 15  # bytes of module names
+_POLL = 0.01  # s between checks of a child, if the system cannot wait for one
 
 
 def serve() -> None:
-    """Do jobs from standard input until it ends."""
+    """Do jobs from standard input until its end."""
     source = os.fdopen(os.dup(0), "rb")
     answers = os.fdopen(os.dup(1), "wb")
     null = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):  # what a library prints goes nowhere
+    for stream in (0, 1, 2):  # discard the output of libraries
         os.dup2(null, stream)
     opening.inside = True
     while len(size := source.read(LENGTH)) == LENGTH:
@@ -57,7 +57,7 @@ def _done(job: Job) -> Ended | str:
         except ImportError as error:
             return error.name or library
     importlib.import_module(job.module)
-    if not hasattr(os, "fork"):  # the server itself does it, and is replaced if it dies
+    if not hasattr(os, "fork"):  # the server itself reads the file, and is replaced if it dies
         return Ended(_work(job))
     here, there = os.pipe()
     pid = os.fork()
@@ -73,21 +73,21 @@ def _done(job: Job) -> Ended | str:
             remove_scratch()
             os._exit(code)
     os.close(there)
-    ended = _waited(pid, job.seconds + limits.PATIENCE.value)
-    _import_for_the_next(os.read(here, _PIPE).decode("utf-8", "replace").split())
+    ended = _wait(pid, job.seconds + limits.PATIENCE.value)
+    _import_for_later_children(os.read(here, _PIPE).decode("utf-8", "replace").split())
     os.close(here)
     return Ended(ended)
 
 
-def _import_for_the_next(modules: list[str]) -> None:
-    """Import what a child imported, once for all that follow."""
+def _import_for_later_children(modules: list[str]) -> None:
+    """Import the modules that a child imported, for all later children."""
     for name in modules:
         with contextlib.suppress(Exception):
             importlib.import_module(name)
 
 
 def _limit(job: Job) -> None:
-    """Bound time, memory and output of this process."""
+    """Limit time, memory and output of this process."""
     with contextlib.suppress(ImportError, ValueError, OSError):
         # imported late: exists on POSIX only
         import resource
@@ -97,14 +97,14 @@ def _limit(job: Job) -> None:
                 resource.setrlimit(what, (most, most + grace))
 
         bound(resource.RLIMIT_CORE, 0)
-        bound(resource.RLIMIT_CPU, int(job.seconds) + 1, 2)  # a signal first that says why
+        bound(resource.RLIMIT_CPU, int(job.seconds) + 1, 2)  # first a signal that states the reason
         bound(resource.RLIMIT_FSIZE, _TEXT_PER_NUMBER * job.output)
         bound(resource.RLIMIT_AS, _address_space() + job.memory)
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # an error of writing instead
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # raise a write error instead
 
 
 def _address_space() -> int:
-    """Return the bytes of addresses in use, most of them of libraries."""
+    """Return the address space in use in bytes, mostly of libraries."""
     with contextlib.suppress(OSError, ValueError), open("/proc/self/statm", "rb") as file:  # noqa: PTH123
         return int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
     return 2 << 30
@@ -116,7 +116,7 @@ def _work(job: Job) -> int:
     if job.folder:
         os.chdir(job.folder)
     try:
-        result = _called(function, job)
+        result = _call_checked(function, job)
     except MemoryError:
         return _NO_MEMORY
     except TribolabError as error:
@@ -142,21 +142,21 @@ def _work(job: Job) -> int:
     return code
 
 
-def _called(function: Callable[..., Any], job: Job) -> Any:
-    """Call a function that reads, on a file that is checked: one that cannot be is not read."""
+def _call_checked(function: Callable[..., Any], job: Job) -> Any:
+    """Call a reading function on a file after safety checks."""
     path, is_zip = Path(job.arguments[0]), False
     with damage_told(path, "file"), path.open("rb") as file:
         is_zip = file.read(len(ZIP)) == ZIP
     if is_zip:
         with damage_told(path, "zip archive"):
             refuse_bomb(path)
-    with damage_told(path, "HDF5 or netCDF file"):  # a zip archive can be one, too
+    with damage_told(path, "HDF5 or netCDF file"):  # a zip archive can also be HDF5
         refuse_outside(path)
     return function(*job.arguments, **job.keywords)
 
 
-def _waited(pid: int, seconds: float) -> int | None:
-    """Wait for a child; end it when its time is over."""
+def _wait(pid: int, seconds: float) -> int | None:
+    """Wait for a child; kill it after its time limit."""
     if hasattr(os, "pidfd_open"):
         handle = os.pidfd_open(pid)
         try:

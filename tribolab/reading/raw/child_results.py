@@ -1,4 +1,4 @@
-"""What a child process returns: numbers, texts, arrays and errors, and no functions."""
+"""Results of a child process: numbers, texts, arrays and errors, but no functions."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 from tribolab.arrays.scratch import take_in
 
-LENGTH = 8  # bytes of a message's length
-_MAPPED = 1 << 20  # bytes of a result from which on it stays in its file
+LENGTH = 8  # bytes of a message length
+_MAPPED = 1 << 20  # bytes above which a result stays in its file
 _ALIGNED = 64
-_FUNCTIONS = {  # that rebuild arrays and datasets; everything else that comes back is a class
+_FUNCTIONS = {  # functions that rebuild arrays and datasets; all other globals are classes
     ("numpy", "_frombuffer"),
     ("numpy._core.numeric", "_frombuffer"),
     ("numpy.core.numeric", "_frombuffer"),
@@ -23,7 +23,7 @@ _FUNCTIONS = {  # that rebuild arrays and datasets; everything else that comes b
     ("numpy.core.multiarray", "scalar"),
     ("pandas._libs.internals", "_unpickle_block"),
     ("pandas.core.indexes.base", "_new_Index"),
-    ("pyarrow.lib", "_restore_array"),  # texts of pandas
+    ("pyarrow.lib", "_restore_array"),  # text of pandas
     ("pyarrow.lib", "py_buffer"),
     ("pyarrow.lib", "type_for_alias"),
     ("copyreg", "__newobj__"),
@@ -33,7 +33,7 @@ _ROOMS = ("builtins", "numpy", "pandas", "xarray", "datetime", "collections", "p
 
 
 class Failure(NamedTuple):
-    """An error as it travels: an exception pickles in ways that other packages change."""
+    """Error for transfer between processes, as packages change the pickling of exceptions."""
 
     kind: type[Exception]
     arguments: tuple[Any, ...]
@@ -41,7 +41,7 @@ class Failure(NamedTuple):
 
 
 def packed_error(error: object) -> Any:
-    """Return an error, and errors in its parts, as `Failure`; anything else as it is."""
+    """Return errors, also nested ones, as `Failure`; anything else unchanged."""
     if not isinstance(error, Exception):
         return error
     state = {key: packed_error(value) for key, value in vars(error).items() if key[0] != "_"}
@@ -49,7 +49,7 @@ def packed_error(error: object) -> Any:
 
 
 def unpacked_error(failure: Any) -> Any:
-    """Return the error that `packed_error` packed; anything else as it is."""
+    """Return the error packed by `packed_error`; anything else unchanged."""
     if not isinstance(failure, Failure):
         return failure
     error = failure.kind.__new__(failure.kind, *map(unpacked_error, failure.arguments))
@@ -60,21 +60,21 @@ def unpacked_error(failure: Any) -> Any:
 
 
 def write_result(value: object, file: io.BufferedIOBase, most: int) -> bool:
-    """Write a result so that long arrays need not be copied when they are read.
+    """Write a result so that long arrays can be read without copying.
 
     Parameters
     ----------
     value
         Anything that can be pickled.
     file
-        Open for writing, at its start.
+        File open for writing, at its start.
     most
-        Bytes that its arrays may have together.
+        Most bytes of all its arrays.
 
     Returns
     -------
     bool
-        Whether it is written: its arrays are no larger.
+        Whether it was written; False if its arrays are larger.
     """
     buffers: list[pickle.PickleBuffer] = []
     data = pickle.dumps(value, protocol=5, buffer_callback=buffers.append)
@@ -90,7 +90,7 @@ def write_result(value: object, file: io.BufferedIOBase, most: int) -> bool:
 
 
 def read_result(handle: int) -> Any:
-    """Read what `write_result` wrote."""
+    """Read a result written by `write_result`."""
     with open(handle, "r+b", closefd=False) as file:  # noqa: PTH123 - a descriptor
         if os.fstat(handle).st_size > _MAPPED:
             content: Any = mmap.mmap(handle, 0)
@@ -106,11 +106,11 @@ def read_result(handle: int) -> Any:
         place += -place % _ALIGNED
         buffers.append(view[place : place + length])
         place += length
-    return _Careful(io.BytesIO(view[first : first + size]), buffers=buffers).load()
+    return _SafeUnpickler(io.BytesIO(view[first : first + size]), buffers=buffers).load()
 
 
-class _Careful(pickle.Unpickler):
-    """Takes numbers, texts, arrays and records from a child, and no functions but those known."""
+class _SafeUnpickler(pickle.Unpickler):
+    """Unpickler that accepts numbers, texts, arrays and records, and only known functions."""
 
     def find_class(self, module: str, name: str) -> Any:
         found = None

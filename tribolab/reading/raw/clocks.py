@@ -1,4 +1,4 @@
-"""Columns with clocks of their own, brought to the clock of one of them."""
+"""Interpolation of columns with separate clocks to one of these clocks."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import numpy as np
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.raw.model import Clock, RawColumn, Setting
 
-INTERVAL_KEY = "wf_increment"  # what LabVIEW calls the time from value to value
+INTERVAL_KEY = "wf_increment"  # LabVIEW's name of the sampling interval
 INTERVAL_PATTERN = rf"^{INTERVAL_KEY}: (\S+)"
 
 
 class OneClock(NamedTuple):
-    """Numbers of columns at the times of one clock; which of them had another, by place."""
+    """Columns at the times of one clock, and the places of those that had another."""
 
     values: list[np.ndarray]
     clock: Clock
@@ -23,7 +23,7 @@ class OneClock(NamedTuple):
 
     @property
     def setting(self) -> Setting:
-        """The interval [s] as a setting of the table."""
+        """Sampling interval [s] as a setting of the table."""
         return Setting(INTERVAL_KEY, repr(self.clock.interval))
 
 
@@ -35,19 +35,18 @@ def on_one_clock(columns: Sequence[RawColumn], lead: int | None = None) -> OneCl
     columns
         The columns.
     lead
-        The place of the one whose clock is taken; by default that of the shortest interval.
+        Place of the column whose clock is used; by default that with the shortest interval.
 
     Returns
     -------
     OneClock or None
-        None if a column has no clock. Values of other clocks are interpolated linearly between
-        their own; before the first and after the last of them they are NaN, and rows are left out
-        there if less than an interval of that clock is missing.
+        None if a column has no clock. Other columns are interpolated linearly. Outside their range
+        they are NaN; rows at the ends are left out if less than one of their intervals is missing.
 
     Raises
     ------
     ReadError
-        If a column was recorded while the other was not.
+        If the columns do not overlap in time.
 
     Examples
     --------
@@ -81,7 +80,7 @@ def on_one_clock(columns: Sequence[RawColumn], lead: int | None = None) -> OneCl
         values.append(np.interp(at, when, column.values, left=np.nan, right=np.nan))
         if own != clock:
             others[place] = own
-        # at either end one has not begun or has just ended
+        # missing rows within one interval at either end are left out
         if when[0] - at[0] <= own.interval:
             begin = max(begin, int(np.searchsorted(at, when[0])))
         if at[-1] - when[-1] <= own.interval:

@@ -1,7 +1,7 @@
-"""HDF5 and netCDF-4 files must hold their own data, read with the library's own filters.
+"""Safety checks of HDF5 and netCDF-4 files: no external data, no foreign filters.
 
-HDF5 can store a dataset in any other file of the machine, or show parts of one as its own. An
-untrusted file could so bring a secret into results that are published.
+HDF5 can store a dataset in any other file of the computer, or show parts of it as its own. An
+untrusted file could thus expose confidential data in published results.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from tribolab.reading.raw import limits
 from tribolab.reading.raw.opening import RefusedError, isolated, missing
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_USER_BLOCK = 512  # bytes, the shortest
+_USER_BLOCK = 512  # bytes; the shortest user block
 _CLASSIC = b"CDF"
-_BYTES = {3: 2, 4: 4, 5: 4, 6: 8, 8: 2, 9: 4, 10: 8, 11: 8}  # of a number, by its type; else 1
-# registered numbers of the filters in the library (deflate, shuffle, fletcher32, szip, nbit,
-# scaleoffset) and of LZF, which h5py brings: https://github.com/HDFGroup/hdf5_plugins
+_BYTES = {3: 2, 4: 4, 5: 4, 6: 8, 8: 2, 9: 4, 10: 8, 11: 8}  # bytes of a number by type; else 1
+# registered numbers of the library's filters (deflate, shuffle, fletcher32, szip, nbit,
+# scaleoffset) and of LZF, part of h5py: https://github.com/HDFGroup/hdf5_plugins
 _OWN_FILTERS = frozenset((1, 2, 3, 4, 5, 6, 32000))
 
 
 @isolated()
 def check_self_contained(path: Path) -> None:
-    """Refuse a file that takes data from elsewhere: every child does so before it reads.
+    """Raise if a file refers to external data; every child process checks this before reading.
 
     Parameters
     ----------
@@ -34,17 +34,17 @@ def check_self_contained(path: Path) -> None:
     Raises
     ------
     ReadError
-        As `refuse_outside`, or if it is damaged.
+        As for `refuse_outside`, or if it is damaged.
     """
 
 
 def refuse_outside(path: Path) -> None:
-    """Refuse HDF5 that takes data from elsewhere, or a file of more objects than can be read.
+    """Raise if an HDF5 file refers to external data, or has too many objects.
 
     Parameters
     ----------
     path
-        Any file; netCDF-4 and MAT 7.3 are HDF5, too.
+        Any file; netCDF-4 and MAT 7.3 are also HDF5.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def refuse_outside(path: Path) -> None:
     except ImportError as error:
         raise missing(path, "h5py") from error
     with h5py.File(path, "r") as opened:
-        look = _Look(h5py, opened)
+        look = _Visitor(h5py, opened)
         look.count_attributes(opened.id)
         opened.id.links.visit(look)
     if look.too_many:
@@ -81,7 +81,7 @@ def refuse_outside(path: Path) -> None:
 
 
 def _variables_of_classic(file: BinaryIO, version: int) -> int:
-    """Count the variables in the header of a classic netCDF file; 0 if it is damaged.
+    """Return the number of variables in the header of a classic netCDF file; 0 if it is damaged.
 
     References
     ----------
@@ -101,7 +101,7 @@ def _variables_of_classic(file: BinaryIO, version: int) -> int:
 
     try:
         file.seek(4)
-        number()  # records
+        number()  # number of records
         for is_attribute in (False, True):
             number(4)
             if (count := number()) > limits.HDF5_ATTRIBUTES.value:
@@ -117,7 +117,7 @@ def _variables_of_classic(file: BinaryIO, version: int) -> int:
 
 
 def is_hdf5(path: Path) -> bool:
-    """Whether HDF5 begins at 0, 512, 1024, 2048 ... bytes: the library looks at all of them.
+    """Whether HDF5 begins at byte 0, 512, 1024, 2048 ..., as the library also checks.
 
     References
     ----------
@@ -134,14 +134,14 @@ def is_hdf5(path: Path) -> bool:
 
 
 def foreign_storage(h5: Any, item: Any) -> str:
-    """Say how a dataset takes its data from elsewhere; "" if it does not.
+    """Return how a dataset refers to external data or filters; "" if it does not.
 
     Parameters
     ----------
     h5
         The library h5py.
     item
-        Identifier of a dataset; one of anything else has no storage.
+        Identifier of an object; only datasets have storage.
     """
     if not isinstance(item, h5.h5d.DatasetID):
         return ""
@@ -159,15 +159,15 @@ def foreign_storage(h5: Any, item: Any) -> str:
 
 
 def refused(path: Path, name: str, what: str) -> RefusedError:
-    """Return the error about a dataset or link that leads out of a file."""
+    """Return the error for a dataset or link that refers to data outside a file."""
     return RefusedError(
         f"{path}: '{shown(name, 80)}' is {what}; tribolab reads no data from outside a file. "
         "Save a copy that holds its own data (h5repack, or read it and write it again)"
     )
 
 
-class _Look:
-    """Looks at one link after the other; stops at the first that leads out of the file."""
+class _Visitor:
+    """Visitor of all links that stops at the first one to external data."""
 
     def __init__(self, h5py: Any, file: Any) -> None:
         self._h5py, self._file = h5py, file
@@ -178,7 +178,7 @@ class _Look:
         h5 = self._h5py
         self._count += 1
         if self._count > limits.HDF5_OBJECTS.value or name.count(b"/") > limits.HDF5_DEPTH.value:
-            self.too_many = True  # an error would not pass through the library
+            self.too_many = True  # an exception would not pass through the library
         if self.too_many:
             return True
         kind = self._file.id.links.get_info(name).type
@@ -194,7 +194,7 @@ class _Look:
         return True if what else None
 
     def count_attributes(self, item: Any) -> None:
-        """Count the attributes of a group, a dataset or a type."""
+        """Count the attributes of a group, dataset or type."""
         self._attributes += self._h5py.h5a.get_num_attrs(item)
         self.too_many |= self._attributes > limits.HDF5_ATTRIBUTES.value
 

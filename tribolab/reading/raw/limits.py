@@ -1,4 +1,4 @@
-"""How much a file may take of the machine while it is read."""
+"""Limits of the resources used while reading a file."""
 
 from tribolab.core.limit import Limit
 

@@ -1,8 +1,8 @@
-"""Numbers that instruments write where there is no value: -9999, 65535, 9.9E37.
+"""Sentinels that instruments write for missing values: -9999, 65535, 9.9E37.
 
-What is repeated exactly, is one of the numbers that programs choose for it, and stands far outside
-of all else in its column is no measurement. 9.9E37 and 9.91E37 are what SCPI instruments answer for
-an overload and for no number, 1.70141E+38 and 3.40282E+38 the largest numbers of old programs.
+A sentinel is repeated exactly, is a number that programs choose for the purpose, and is far outside
+the other values of its column. SCPI instruments return 9.9E37 for an overload and 9.91E37 for not a
+number; 1.70141E+38 and 3.40282E+38 are the largest numbers of old programs.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 
 from tribolab.arrays.chunks import anywhere, pieces
 
-LARGEST = 1e60  # [SI] beyond it a number is damage; its fourth power is a number still
-_NO_SIGNAL = 9.8e29  # in the file's own unit: beyond it a number is a mark, how rare it may be
+LARGEST = 1e60  # SI; larger numbers are damaged, while the fourth power of this one is finite
+_NO_SIGNAL = 9.8e29  # in the file's unit; larger numbers are sentinels even if they occur once
 _NINES = (999.0, 9999.0, 99999.0, 999999.0, 9999999.0, 99999999.0)
 _MARKS = np.array(
     [
@@ -26,25 +26,25 @@ _MARKS = np.array(
         *(2147483647.0, 2147483648.0, 4294967295.0),
     ]
 )
-# ends of converters of 24 and 16 bits, which programs show over a power of ten: -8388.608
+# ends of 24- and 16-bit converters, possibly divided by a power of ten: -8388.608
 _FULL = np.array([8388607.0, 8388608.0, 16777215.0, 32767.0, 32768.0, 65535.0])
 _FULL = np.concatenate([_FULL / 10.0**power for power in range(1, 7)])
-_ROUNDED = 1e-5  # relative: such a number with few decimals
-_SINGLE = 2e-7  # relative: a number with single precision
+_ROUNDED = 1e-5  # relative rounding of a sentinel with few decimals
+_SINGLE = 2e-7  # relative rounding in single precision
 _TWICE = 2
-_OUTSIDE = 5.0  # times the largest other number
-_KINDS = 4  # marks of one column that are looked for
+_OUTSIDE = 5.0  # ratio to the largest other number
+_KINDS = 4  # most sentinels per column
 
 
 class Marked(NamedTuple):
-    """A number that stands for no value, as the file writes it, and how often it does."""
+    """Sentinel as written in the file, and how often it occurs."""
 
     number: float
     rows: int
 
     @property
     def words(self) -> str:
-        """Both in words."""
+        """Sentinel and number of occurrences in words."""
         times = "once" if self.rows == 1 else f"{self.rows} times"
         return f"{self.number:.9g} {times}"
 
@@ -52,19 +52,19 @@ class Marked(NamedTuple):
 def take_marks(
     parts: Sequence[np.ndarray], scale: float = 1.0, offset: float = 0.0
 ) -> list[Marked]:
-    """Put NaN where a number stands for no value.
+    """Replace sentinels by NaN.
 
     Parameters
     ----------
     parts
-        A column, in pieces (row); changed in place.
+        A column in pieces (row); changed in place.
     scale, offset
-        What turned the file's numbers x into these: ``scale * x + offset``.
+        Conversion of the file's numbers x to SI: ``scale * x + offset``.
 
     Returns
     -------
     list of Marked
-        What was taken for missing; empty for most columns.
+        Sentinels that were replaced; empty for most columns.
 
     Examples
     --------
@@ -76,11 +76,11 @@ def take_marks(
     """
     taken: list[Marked] = []
     for _ in range(_KINDS):
-        ends = [end for end in _ends(parts) if _may_be_mark((end - offset) / scale)]
+        ends = [end for end in _extremes(parts) if _may_be_mark((end - offset) / scale)]
         if not ends:
             break
         rest = _largest_other(parts, ends, scale, offset)
-        marks = [mark for end in ends if (mark := _judged(end, parts, rest, scale, offset))]
+        marks = [mark for end in ends if (mark := _sentinel_of(end, parts, rest, scale, offset))]
         if not marks:
             break
         taken += [Marked(number, count) for _, number, count in marks]
@@ -89,8 +89,8 @@ def take_marks(
     return taken
 
 
-def _ends(parts: Sequence[np.ndarray]) -> list[float]:
-    """Lowest and highest number of a column; infinite ones are looked at elsewhere."""
+def _extremes(parts: Sequence[np.ndarray]) -> list[float]:
+    """Return the lowest and highest finite number of a column."""
     filled = [part for part in parts if part.size]
     ends = {float(np.fmin.reduce(part)) for part in filled}
     ends |= {float(np.fmax.reduce(part)) for part in filled}
@@ -105,10 +105,10 @@ def _may_be_mark(number: float) -> bool:
     return bool((np.abs(_FULL - size) <= _ROUNDED * size).any())
 
 
-def _judged(
+def _sentinel_of(
     end: float, parts: Sequence[np.ndarray], rest: float, scale: float, offset: float
 ) -> tuple[float, float, int] | None:
-    """Return a mark as it stands here and in the file, and its count; None for a measurement."""
+    """Return a sentinel in SI and as in the file, with its count; None if it is a measurement."""
     number = (end - offset) / scale
     count = sum(int((part[a:b] == end).sum()) for part in parts for a, b in pieces(0, part.size))
     number = float(f"{number:.9g}")
@@ -121,7 +121,7 @@ def _judged(
 def _largest_other(
     parts: Sequence[np.ndarray], ends: Sequence[float], scale: float, offset: float
 ) -> float:
-    """Size of the largest other number, in the unit of the file; minus infinity for none."""
+    """Return the largest other magnitude in the unit of the file; minus infinity without any."""
     largest = -np.inf
     for part in parts:
         for first, last in pieces(0, part.size):
@@ -142,29 +142,29 @@ def _without(parts: Sequence[np.ndarray], number: float) -> None:
 
 
 def measurable(values: np.ndarray) -> np.ndarray:
-    """Return values in SI with those that nothing measures as NaN, and traces of nothing as 0.
+    """Return values with impossibly large ones as NaN, and negligibly small ones as 0.
 
-    So whatever stands in a file, squares and ratios of its numbers are numbers, too. What is
-    infinite stays so: it is refused or left out where it is met.
+    So squares and ratios of numbers in any file are finite. Infinite values are kept, and refused
+    or left out later.
 
     >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
     [1.0, nan, 0.0]
     """
     if values.dtype.kind != "f" or not anywhere(_odd, values):
         return values
-    return np.where(beyond_range(values), np.nan, np.where(_nothing(values), 0.0, values))
+    return np.where(beyond_range(values), np.nan, np.where(_is_negligible(values), 0.0, values))
 
 
 def _odd(values: np.ndarray) -> np.ndarray:
-    return beyond_range(values) | _nothing(values)
+    return beyond_range(values) | _is_negligible(values)
 
 
 def beyond_range(values: np.ndarray) -> np.ndarray:
-    """Which numbers nothing measured can have."""
+    """Return a mask of finite numbers that are physically impossible."""
     return (np.abs(values) > LARGEST) & np.isfinite(values)
 
 
-def _nothing(values: np.ndarray) -> np.ndarray:
-    """Which numbers are a trace of nothing."""
+def _is_negligible(values: np.ndarray) -> np.ndarray:
+    """Return a mask of numbers that are negligibly small."""
     size = np.abs(values)
     return (size < 1 / LARGEST) & (size > 0)

@@ -1,4 +1,4 @@
-"""A file as tables of numbers and typed settings, whatever container it is written in."""
+"""Tables of numbers and settings of a file, independent of its format."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-MAX_SETTINGS = 200  # of a file: a table of parameters has fewer, a log of events has more
+MAX_SETTINGS = 200  # a file of parameters has fewer, an event log more
 
 
 class Place(NamedTuple):
-    """Where something stands in a file, for messages: a line and a cell, or a path in it."""
+    """Position in a file for messages: a line and a cell, or a path inside the file."""
 
     path: str = ""
     line: int | None = None
@@ -20,9 +20,9 @@ class Place(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """What a file says besides its columns: "radius: 15 mm", an attribute, a row of cells.
+    """Setting of a file besides its columns: "radius: 15 mm", an attribute, a row of cells.
 
-    `key` is empty for a text that stands alone, such as a title.
+    `key` is empty for text alone, such as a title.
     """
 
     key: str
@@ -32,26 +32,26 @@ class Setting(NamedTuple):
 
     @property
     def line(self) -> str:
-        """The setting as the patterns of a dialect see it."""
+        """Setting as text for the patterns of a dialect."""
         return f"{self.key}: {self.text}" if self.key else self.text
 
 
 class Clock(NamedTuple):
-    """When the values of a column were taken: the first one [s] and the interval [s]."""
+    """Sampling times of a column: first time [s] and interval [s]."""
 
     start: float
     interval: float
 
     def times(self, rows: int) -> np.ndarray:
-        """Return the time [s] of each of so many values (row)."""
+        """Return the times [s] of so many values (row)."""
         return self.start + self.interval * np.arange(rows)
 
 
 class RawColumn(NamedTuple):
-    """A column: its label and unit as the file has them, and its numbers (row).
+    """Column with its label and unit in the file, and its numbers (row).
 
-    `meaning` is what the file says of it besides; `path` the name by which it is found in a file
-    whose tables are not told apart. `clock` is its own, if it has one.
+    `meaning` is a further description in the file; `path` its name in a file whose tables are
+    joined. `clock` are its own sampling times, if any.
     """
 
     label: str
@@ -63,7 +63,7 @@ class RawColumn(NamedTuple):
 
 
 class RawTable(NamedTuple):
-    """A table: its name (a sheet, the path of a group, "" for that of a whole file) and columns."""
+    """Table with its name (of a sheet or group, "" for a whole file) and columns."""
 
     name: str
     columns: tuple[RawColumn, ...]
@@ -71,14 +71,14 @@ class RawTable(NamedTuple):
 
     @property
     def rows(self) -> int:
-        """How many rows its longest column has."""
+        """Number of rows of the longest column."""
         return max((column.values.size for column in self.columns), default=0)
 
 
 class RawFile(NamedTuple):
-    """The tables of a file in its order, and what it says of all of them.
+    """Tables of a file in order, and common settings.
 
-    `notes` are remarks on the file as attributes of a run, such as that it is cut short.
+    `notes` are remarks on the file for attributes of a run, e.g. that it is incomplete.
     """
 
     path: Path
@@ -88,7 +88,7 @@ class RawFile(NamedTuple):
     notes: Mapping[str, str] = {}
 
     def as_one_table(self) -> RawTable:
-        """Return all columns as one table, called by their paths; all settings are its own."""
+        """Return all columns as one table, labelled by their paths, with all settings."""
         columns = [
             column._replace(label=column.path or column.label)
             for table in self.tables
@@ -100,6 +100,6 @@ class RawFile(NamedTuple):
 
 
 def text_of(settings: Iterable[Setting]) -> str:
-    """Return settings as text, a line for each, as patterns of a dialect look into it."""
+    """Return settings as text, one per line, for the patterns of a dialect."""
     lines = dict.fromkeys(setting.line for setting in settings if setting.line)
     return "\n".join(list(lines)[:MAX_SETTINGS])

@@ -1,10 +1,10 @@
-"""The entry point for every container: its library runs in a child process with limits.
+"""Isolation of container libraries in a child process with limits.
 
-Libraries for HDF5, workbooks, Parquet and the like trust the sizes and addresses in a file. A
-damaged or hostile file can end the process, ask for all memory or never come to an end. Functions
-that are marked `isolated` therefore run in a child process; numbers and texts come back, and a
-child that dies costs one error. The child is a copy of a process that has imported the library, so
-that a file costs some 10 ms.
+Libraries for HDF5, workbooks, Parquet etc. trust the sizes and addresses in a file. A damaged or
+hostile file can crash the process, exhaust memory or never end. Functions marked `isolated`
+therefore run in a child process, which returns numbers and texts; a crash becomes an ordinary
+error. The child is a copy of a process with the library already imported, so that a file takes
+only about 10 ms.
 """
 
 from __future__ import annotations
@@ -30,48 +30,48 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 _PACKAGES = {"python_calamine": "python-calamine", "nptdms": "npTDMS"}
-_OF_CORE = {"h5py", "netCDF4", "xarray", "pandas", "pyarrow"}  # what no extra brings
+_OF_CORE = {"h5py", "netCDF4", "xarray", "pandas", "pyarrow"}  # part of the core installation
 
-# what readers turn into words themselves; a library that raises anything else met what it does not
-# expect, as SciPy does with an IndexError in a damaged netCDF file
+# errors that readers handle; any other exception of a library means unexpected content, e.g.
+# SciPy's IndexError in a damaged netCDF file
 _HANDLED = (
     *(TribolabError, ImportError, OSError, EOFError, ValueError, KeyError, TypeError),
     *(RuntimeError, Warning),
 )
 
 NO_ROOM = 6  # exit code of a child that cannot write its result
-inside = False  # whether this is the child
-# What was refused, and what a function did not read, and when [s], by path, size, time, inode and
-# call: a dozen readers may look at a file, each for some seconds.
+inside = False  # whether this process is the child
+# refusals and failures with their time [s], by path, size, time, inode and call, as a dozen readers
+# may each try a file for some seconds
 _REFUSED: dict[tuple[Path, int, int, int, str], tuple[ReadError, float]] = {}
 
 
 class MissingLibraryError(ReadError, ImportError):
-    """A library that reads this kind of file is not installed."""
+    """Raised if the library for a file format is not installed."""
 
 
 class RefusedError(ReadError):
-    """A file takes data from outside of it, or holds too much to be a measurement."""
+    """Raised if a file refers to external data, or is too large for a measurement."""
 
 
 class CrashedError(ReadError):
-    """A library crashed on a file, or exceeded its limits: the file is damaged or hostile."""
+    """Raised if a library crashed on a file or exceeded limits: it is damaged or hostile."""
 
 
 def isolated(*libraries: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Have a function that reads a file run in a child process with limits.
+    """Return a decorator that runs a reading function in a child process with limits.
 
     Parameters
     ----------
     *libraries
-        Modules that the function imports: they are imported once for all children.
+        Modules that the function imports; they are imported once for all children.
 
     Returns
     -------
     Callable
-        A decorator for functions of a module whose first argument is the file's path [Path] and
-        whose result holds numbers, texts, arrays, datasets and tuples of them. The function raises
-        what it raises in the child; in a child it is called directly.
+        A decorator for module functions whose first argument is the path of the file [Path] and
+        whose result consists of numbers, texts, arrays, datasets and tuples. Exceptions of the
+        child are raised again; in a child the function is called directly.
 
     Raises
     ------
@@ -96,12 +96,12 @@ def isolated(*libraries: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def largest_unpacked(size: int) -> int:
-    """Return how many bytes a packed file may unpack to.
+    """Return the number of bytes to which a compressed file may unpack.
 
     Parameters
     ----------
     size
-        Of the file [bytes].
+        Size of the file [bytes].
 
     Examples
     --------
@@ -142,7 +142,7 @@ def _in_child(
             args,
             kwargs,
             target,
-            _here(),
+            _current_folder(),
             limits.CPU_FOR_ANY_FILE.value + size / limits.BYTES_PER_CPU_SECOND.value,
             int(limits.MEMORY_FOR_ANY_FILE.value + limits.MEMORY_PER_BYTE.value * size),
             largest_unpacked(size),
@@ -172,13 +172,13 @@ def _in_child(
         f"{path}: the file is damaged or hostile: {_ending(ended)}; copy it again from where it "
         "was written"
     )
-    if ended.code is None or ended.code > 0:  # a signal may have come from elsewhere
+    if ended.code is None or ended.code > 0:  # a signal may have another cause
         _REFUSED[*asked, function.__qualname__] = crashed, time.monotonic()
     raise crashed
 
 
 def missing(path: Path, library: str) -> MissingLibraryError:
-    """Return the error that says how to install what reads a file."""
+    """Return the error with installation instructions for a missing library."""
     package = _PACKAGES.get(library, library)
     source = package if library.split(".")[0] in _OF_CORE else "'tribolab[formats]'"
     return MissingLibraryError(
@@ -186,8 +186,8 @@ def missing(path: Path, library: str) -> MissingLibraryError:
     )
 
 
-def _here() -> str:
-    """Return the folder that relative paths start from; "" if it was removed."""
+def _current_folder() -> str:
+    """Return the current folder; "" if it was removed."""
     try:
         return os.getcwd()  # noqa: PTH109 - a text for another process
     except OSError:
@@ -208,19 +208,19 @@ def _ending(ended: Ended) -> str:
 
 @contextlib.contextmanager
 def damage_told(path: Path, what: str) -> Iterator[None]:
-    """Turn what a library raises on a damaged file into one error.
+    """Convert any exception of a library on a damaged file to one error.
 
     Parameters
     ----------
     path
         The file.
     what
-        What it should be, e.g. ``"HDF5 file"``.
+        Expected kind of file, e.g. ``"HDF5 file"``.
 
     Raises
     ------
     ReadError
-        Instead of any error that is not ours; what is not an Exception (a panic) included.
+        Instead of any foreign error, including those not derived from Exception (a panic).
     """
     try:
         yield

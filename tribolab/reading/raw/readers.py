@@ -1,8 +1,8 @@
-"""Readers in Python: a file of your own, or a package that is installed.
+"""Custom readers in Python: a local file or an installed package.
 
 A reader has two functions. ``can_read(head)`` answers "yes", "maybe" or "no" to the first bytes of
-a file; ``read(path)`` returns a `RawFile` or an `xarray.Dataset` whose columns are called by the
-quantities of tribolab, each with its unit. A package registers its module under the entry point
+a file; ``read(path)`` returns a `RawFile` or an `xarray.Dataset` whose columns are named after
+tribolab's quantities, each with its unit. A package registers its module under the entry point
 group ``tribolab.readers``.
 """
 
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
 GROUP = "tribolab.readers"
 Answer = Literal["yes", "maybe", "no"]
-_HEAD = 1 << 16  # bytes that a reader is asked about
+_HEAD = 1 << 16  # bytes passed to `can_read`
 
 
 class Reader(NamedTuple):
-    """A reader: its name and its two functions."""
+    """Reader with its name and two functions."""
 
     name: str
     can_read: Callable[[bytes], Answer]
@@ -41,7 +41,7 @@ class Reader(NamedTuple):
 
 
 def is_reader(name: str) -> bool:
-    """Whether an instrument is a file of Python, or an installed reader."""
+    """Whether an instrument is a Python file or an installed reader."""
     return name.endswith(".py") or (not name.endswith(".toml") and name in installed_readers())
 
 
@@ -60,7 +60,7 @@ def source_of(name: str) -> Path:
     Raises
     ------
     ConfigError
-        If there is no such file.
+        If the file does not exist.
     """
     if name in installed_readers():
         found = importlib.util.find_spec(installed_readers()[name].module)
@@ -76,7 +76,7 @@ def source_of(name: str) -> Path:
 
 
 def answers(head: bytes) -> dict[str, Answer]:
-    """Return what installed readers answer to the first bytes of a file, but for "no"."""
+    """Return the answers of installed readers to the first bytes of a file, except "no"."""
     said = {name: _answer(_loaded(name), head) for name in installed_readers()}
     return {name: answer for name, answer in said.items() if answer != "no"}
 
@@ -96,13 +96,13 @@ def read_with(name: str, path: Path) -> RawFile:
     ConfigError
         If the reader cannot be imported, or lacks a function.
     ReadError
-        If it does not read such a file, fails, or returns no columns with units.
+        If it cannot read the file, fails, or returns no columns with units.
     """
     state = path.stat()
     return _read(name, _stamp(name), path, state.st_size, state.st_mtime_ns)
 
 
-@functools.lru_cache(maxsize=2)  # asked for its columns, then for its numbers
+@functools.lru_cache(maxsize=2)  # called for columns, then for numbers
 def _read(name: str, stamp: int, path: Path, size: int, changed: int) -> RawFile:
     reader = _loaded(name)
     with path.open("rb") as file:
@@ -112,8 +112,8 @@ def _read(name: str, stamp: int, path: Path, size: int, changed: int) -> RawFile
         result = reader.read(path)
     except TribolabError:
         raise
-    except Exception as error:  # whatever the code of others raises
-        raise ReadError(f"{reader.name} fails: {_in_words(error)}", where=path) from error
+    except Exception as error:  # foreign code may raise anything
+        raise ReadError(f"{reader.name} fails: {_error_text(error)}", where=path) from error
     if isinstance(result, RawFile):
         raw = result._replace(path=path)
     elif hasattr(result, "data_vars"):
@@ -132,7 +132,7 @@ def _read(name: str, stamp: int, path: Path, size: int, changed: int) -> RawFile
 
 
 def _of_dataset(path: Path, data: xr.Dataset) -> RawFile:
-    """Return the variables along time of a run, or the heights and positions of a scan."""
+    """Return the variables over time of a run, or heights and positions of a scan."""
     heights = data["height"] if "height" in data and "time" not in data.dims else None
     if heights is not None:
         names = [str(name) for name in (*heights.dims, "height") if name in data.variables]
@@ -167,8 +167,8 @@ def _load(name: str, stamp: int) -> Reader:
     except AttributeError as error:
         what = f"{path}: a reader has the functions can_read(head) and read(path); {error}"
         raise ConfigError(what) from error
-    except Exception as error:  # whatever the code of others raises
-        raise ConfigError(f"{path}: cannot be imported: {_in_words(error)}") from error
+    except Exception as error:  # foreign code may raise anything
+        raise ConfigError(f"{path}: cannot be imported: {_error_text(error)}") from error
 
 
 def _run(path: Path) -> ModuleType:
@@ -182,16 +182,16 @@ def _run(path: Path) -> ModuleType:
 def _answer(reader: Reader, head: bytes) -> Answer:
     try:
         said = reader.can_read(head)
-    except Exception as error:  # whatever the code of others raises
-        raise ConfigError(f"{reader.name}: can_read fails: {_in_words(error)}") from error
+    except Exception as error:  # foreign code may raise anything
+        raise ConfigError(f"{reader.name}: can_read fails: {_error_text(error)}") from error
     if said not in ("yes", "maybe", "no"):
         what = f"{reader.name}: can_read returns {shown(repr(said), 40)}"
         raise ConfigError(f"{what}; return 'yes', 'maybe' or 'no'")
     return said
 
 
-def _in_words(error: Exception) -> str:
-    """Return an error with the line of the reader where it was raised."""
+def _error_text(error: Exception) -> str:
+    """Return an error message with the line of the reader that raised it."""
     frames = traceback.extract_tb(error.__traceback__)
     last = next((frame for frame in reversed(frames) if frame.filename != __file__), None)
     where = f" ({Path(last.filename).name}, line {last.lineno})" if last else ""

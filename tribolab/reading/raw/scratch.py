@@ -1,4 +1,4 @@
-"""Scratch files and folders: where they lie, and how those of killed processes are removed."""
+"""Scratch files and folders, and removal of those of killed processes."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from tribolab.core.errors import OutputError, brief
 
 
 def scratch_place() -> str:
-    """Return the folder for results; what a killed process left there before is removed once."""
+    """Return the scratch folder; remnants of killed processes are removed once."""
     folder = os.environ.get("TMPDIR") or ("/var/tmp" if Path("/var/tmp").is_dir() else "")
     _sweep(folder or tempfile.gettempdir())
     return folder or tempfile.gettempdir()
 
 
 def scratch_folder() -> Path:
-    """Return a new folder that is removed when this process ends, or by a later one if it cannot.
+    """Return a new folder that is removed when this process ends, or later if it is killed.
 
     Returns
     -------
     Path
-        Where ``TMPDIR`` says, else in ``/var/tmp``, which is on a disk everywhere.
+        Folder in ``TMPDIR``, else in ``/var/tmp``, which is always on a disk.
     """
     with scratch_errors():
         folder = Path(tempfile.mkdtemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place()))
@@ -36,7 +36,7 @@ def scratch_folder() -> Path:
 
 
 def scratch_copy(path: Path, content: bytes) -> Path:
-    """Write what a file should contain to a scratch file of the same name."""
+    """Write content to a scratch file of the same name."""
     copy = scratch_folder() / path.name
     with scratch_errors():
         copy.write_bytes(content)
@@ -45,7 +45,7 @@ def scratch_copy(path: Path, content: bytes) -> Path:
 
 @contextlib.contextmanager
 def scratch_errors() -> Iterator[None]:
-    """Report that scratch files cannot be written: that says nothing about the file that is read.
+    """Report write errors of scratch files, which are unrelated to the file being read.
 
     Raises
     ------
@@ -73,7 +73,7 @@ atexit.register(remove_scratch)
 
 @functools.lru_cache(maxsize=4)
 def _sweep(folder: str) -> None:
-    """Remove scratch files and folders of processes that are gone."""
+    """Remove scratch files and folders of processes that ended."""
     for path in Path(folder).glob("tribolab-[0-9]*-*"):
         number = path.name.split("-")[1]
         if not number.isdigit() or _is_alive(int(number)):

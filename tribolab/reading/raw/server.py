@@ -1,4 +1,4 @@
-"""The process that children are copies of, and what it is asked to do."""
+"""Server process whose copies read files, and its jobs."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 from tribolab.reading.raw.child_results import LENGTH
 
 _SERVE = ("-P", "-m", "tribolab.reading.raw.child")
-# a child has one thread, and loads no filter of HDF5 that is not the library's own
+# children have one thread, and load no foreign HDF5 filters
 _ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
-    "ARROW_DEFAULT_MEMORY_POOL": "system",  # others reserve addresses that no limit counts
+    "ARROW_DEFAULT_MEMORY_POOL": "system",  # others reserve uncounted addresses
     "HDF5_PLUGIN_PRELOAD": "::",
     "HDF5_USE_FILE_LOCKING": "FALSE",
     "PYTHONSAFEPATH": "1",
@@ -28,7 +28,7 @@ _ENVIRONMENT = {
 
 
 class Job(NamedTuple):
-    """What a child is to do, and its limits [s, bytes]."""
+    """Task of a child, and its limits [s, bytes]."""
 
     module: str
     name: str
@@ -43,13 +43,13 @@ class Job(NamedTuple):
 
 
 class Ended(NamedTuple):
-    """How a child ended: exit code, or minus the signal; None if it was stopped for its time."""
+    """End of a child: exit code, or minus the signal; None after a timeout."""
 
     code: int | None
 
 
 class Server:
-    """The process that children are copies of."""
+    """Server process that is copied for children."""
 
     def __init__(self) -> None:
         self.lock = threading.Lock()
@@ -57,7 +57,7 @@ class Server:
         self._owner = 0
 
     def run(self, job: Job) -> Ended | str:
-        """Have a job done; again by a new server if this one was killed."""
+        """Do a job; repeat it in a new server if this one was killed."""
         message = pickle.dumps(job)
         with self.lock:
             for attempt in range(2):
@@ -69,7 +69,7 @@ class Server:
                     size = process.stdout.read(LENGTH)
                     if len(size) == LENGTH:
                         answer = process.stdout.read(int.from_bytes(size, "little"))
-                        ended: Ended | str = pickle.loads(answer)  # a library that is missing
+                        ended: Ended | str = pickle.loads(answer)  # name of a missing library
                         return ended
                 except OSError:
                     pass
@@ -79,7 +79,7 @@ class Server:
         return Ended(-9)
 
     def _started(self) -> subprocess.Popen[bytes]:
-        mine = self._owner == os.getpid()  # a copied process has no server of its own yet
+        mine = self._owner == os.getpid()  # a copied process has no server yet
         if self._process is None or not mine or self._process.poll() is not None:
             self._process = subprocess.Popen(
                 [sys.executable, *_SERVE],
@@ -87,14 +87,14 @@ class Server:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 env={**os.environ, **_ENVIRONMENT, "PYTHONPATH": os.pathsep.join(sys.path)},
-                start_new_session=True,  # Ctrl-C is ours to answer
+                start_new_session=True,  # Ctrl-C is handled by this process
             )
             self._owner = os.getpid()
             weakref.finalize(self, _stop, self._process, self._owner)
         return self._process
 
     def stop(self) -> None:
-        """End the server and what it is doing."""
+        """Stop the server and its current job."""
         if self._process is not None:
             _stop(self._process, self._owner)
         self._process = None
@@ -116,6 +116,6 @@ ONLY = Server()
 
 
 def stop_reading() -> None:
-    """End the process that reads files; the next file starts another, with today's search path."""
+    """Stop the server; the next file starts another one with the current search path."""
     with ONLY.lock:
         ONLY.stop()

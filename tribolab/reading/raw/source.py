@@ -1,4 +1,4 @@
-"""Sources are regular files, and their checksum describes the bytes that were analysed."""
+"""Checks that sources are regular files, unchanged while they are read."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ R = TypeVar("R")
 
 
 def check_regular(path: Path) -> None:
-    """Refuse what is not a file with content: a folder, a pipe, a socket, a device.
+    """Raise for a folder, pipe, socket or device.
 
-    Opening a pipe waits for whoever writes into it, and a device such as ``/dev/zero`` never ends.
+    Opening a pipe waits for a writer, and a device such as ``/dev/zero`` never ends.
 
     Raises
     ------
     ReadError
-        If it is none, or there is no such file.
+        If it is not a regular file, or does not exist.
     """
     try:
         mode = path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError) as error:
         raise ReadError(f"{path}: there is no such file") from error
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+    except (OSError, ValueError) as error:  # ValueError: NUL in the path
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     if stat.S_ISDIR(mode):
         raise ReadError(f"{path}: this is a folder, not a file; name the file itself")
@@ -42,7 +42,7 @@ def check_regular(path: Path) -> None:
 
 
 class Identity(NamedTuple):
-    """What tells one state of a file at rest from another: its size, times [ns] and place."""
+    """State of a file at rest: size, times [ns] and inode."""
 
     size: int
     written: int
@@ -51,7 +51,7 @@ class Identity(NamedTuple):
 
 
 def identity_of(path: Path) -> Identity | None:
-    """Return the identity of a file; None if it may be written to, or is none."""
+    """Return the identity of a file; None if it may still be written, or does not exist."""
     with contextlib.suppress(OSError, ValueError):
         now = path.stat()
         age = time.time() - max(now.st_mtime, now.st_ctime)
@@ -61,7 +61,7 @@ def identity_of(path: Path) -> Identity | None:
 
 
 class _State(NamedTuple):
-    """What shows that a file was written to: its size, times [ns], place and checksum."""
+    """State of a file that reveals writing: size, times [ns], inode and checksum."""
 
     size: int
     written: int
@@ -71,22 +71,22 @@ class _State(NamedTuple):
 
 
 def read_unchanged(paths: Iterable[Path], read: Callable[[], R]) -> R:
-    """Return what a function reads from files, if they stay as they are while it reads.
+    """Return the result of a function that reads files, if they do not change meanwhile.
 
-    A run that is still measured, or a file that is still copied, gives numbers of one state and the
-    checksum of another. Such files are read again, and refused if they do not come to rest.
+    A file that is still being written could give numbers of one state and the checksum of another.
+    Such files are read again, and refused if they keep changing.
 
     Parameters
     ----------
     paths
         All files that are read.
     read
-        Reads them.
+        Function that reads them.
 
     Raises
     ------
     ReadError
-        If a file changes each time that it is read; what `read` raises, of files at rest.
+        If a file changes during every attempt; also any error of `read` on unchanged files.
     """
     paths = list(paths)
     for _ in range(int(limits.READINGS.value)):
@@ -94,7 +94,7 @@ def read_unchanged(paths: Iterable[Path], read: Callable[[], R]) -> R:
         result, failure = None, None
         try:
             result = read()
-        except Exception as error:  # raised below, unless it comes of the change
+        except Exception as error:  # raised below, unless caused by the change
             failure = error
         after = [_state(path) for path in paths]
         if failure is not None and (before == after or None in after):
@@ -115,10 +115,10 @@ def read_unchanged(paths: Iterable[Path], read: Callable[[], R]) -> R:
 
 
 def _state(path: Path) -> _State | None:
-    """Return the state of a file; None if there is none.
+    """Return the state of a file; None if it does not exist.
 
-    The checksum tells what the times cannot: file systems and networks note them late and coarsely.
-    Of a file that has long been at rest they are enough.
+    The checksum is needed because file systems and networks update times late and coarsely. For a
+    file that is long at rest the times suffice.
     """
     with contextlib.suppress(OSError, ValueError):
         now = path.stat()

@@ -1,4 +1,4 @@
-"""Units at the end of keys: "contact_radius_mm"."""
+"""Units as suffixes of keys: "contact_radius_mm"."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tribolab.core.errors import TribolabError
 from tribolab.units.conversion import conversion
 from tribolab.units.spellings import MICRO
 
-# SI units of what instruments record
+# SI units of recorded quantities
 _MEASURED = (
     "s",
     "m",
@@ -26,12 +26,12 @@ _MEASURED = (
     "A",
 )
 _WEIGHTS = frozenset(("g", "kg", "gf", "kgf", "kp", "p"))
-_SMALL = {"hz": "Hz", "khz": "kHz", "n": "N", "mn": "mN", "kn": "kN"}  # in keys
+_SMALL = {"hz": "Hz", "khz": "kHz", "n": "N", "mn": "mN", "kn": "kN"}  # lower-case units in keys
 _NO_UNIT = frozenset(("percent", "%", "-", "1"))
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit of something that instruments record.
+    """Whether a text is a unit of a recorded quantity.
 
     >>> is_unit("mm/s"), is_unit("degC"), is_unit("raw"), is_unit("3")
     (True, True, False, False)
@@ -50,7 +50,7 @@ def is_unit(text: str) -> bool:
 
 
 def without_unit(key: str) -> tuple[str, str]:
-    """Separate a unit at the end of a key.
+    """Split a key into name and unit suffix.
 
     >>> without_unit("contact_radius_mm"), without_unit("speed_mm_s"), without_unit("stroke")
     (('contact_radius', 'mm'), ('speed', 'mm/s'), ('stroke', ''))

@@ -1,4 +1,4 @@
-"""Compressed files: unpacked once for a process, and read like any other."""
+"""Compressed files: unpacked once per process, then read like other files."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from tribolab.reading.raw.scratch import scratch_errors, scratch_folder
 from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
-_OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
+_OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are also archives
 _CHUNK = 1 << 20
-_MOST_DEFLATED = 1032  # times: zlib packs no better (zlib.net/zlib_tech.html)
+_MOST_DEFLATED = 1032  # highest compression ratio of zlib (zlib.net/zlib_tech.html)
 _STATED = 4  # bytes at the end of a gzip file that state its unpacked size, modulo 4 GiB
 _LONGEST_README = 1 << 16  # bytes
-_LONGEST_LETTER = 3  # bytes of it that may stand at the end of what was read
-# what lies beside the data in an archive: texts about them, pictures, what systems leave behind
+_LONGEST_LETTER = 3  # bytes of an incomplete character at the end of what was read
+# files in an archive besides data: readmes, pictures, system files
 _README = re.compile(
     r"(?:^|/)[^/]*(?:read[ _-]?me|lies[ _-]?mich|l[ie]s?ez[ _-]?moi|leeme|leggimi|leia[ _-]?me|info"
     r"|about|notes?|notizen?|description|beschreibung|codebook)[^/]*\.(?:txt|md|rst|asc)$"
@@ -44,14 +44,14 @@ class _Source(Protocol):
 
 
 def unpacked(path: Path, head: bytes) -> Path:
-    """Return where the content of a compressed file lies; the file itself where it is none.
+    """Return the path of a compressed file's content; of another file its own path.
 
     Parameters
     ----------
     path
         The file.
     head
-        Its first bytes.
+        First bytes of the file.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def unpacked(path: Path, head: bytes) -> Path:
 
 
 def of_the_file(error: ReadError, inside: Path, path: Path) -> ReadError:
-    """Return an error about what was unpacked as one about the file that the user knows.
+    """Return an error on an unpacked file in terms of the user's file.
 
     >>> error = ReadError("/tmp/u/a.csv: no heights", cure="describe 'a.csv'")
     >>> print(of_the_file(error, Path("/tmp/u/a.csv"), Path("raw/a.csv.gz")))
@@ -89,18 +89,18 @@ def of_the_file(error: ReadError, inside: Path, path: Path) -> ReadError:
 
 
 def holds_arrays(path: Path) -> bool:
-    """Whether an archive holds NumPy's arrays and nothing else."""
+    """Whether an archive contains only NumPy arrays."""
     names = _names(path)
     return bool(names) and all(name.endswith(".npy") for name in names)
 
 
 def is_workbook(path: Path) -> bool:
-    """Whether an archive is a workbook of Excel."""
+    """Whether an archive is an Excel workbook."""
     return any(name.startswith("xl/workbook") for name in _names(path))
 
 
 def _names(path: Path) -> list[str]:
-    """Names of all that an archive holds; none where it cannot be opened."""
+    """Return the names of all members of an archive; empty if it cannot be opened."""
     try:
         with zipfile.ZipFile(path) as archive:
             return archive.namelist()
@@ -109,7 +109,7 @@ def _names(path: Path) -> list[str]:
 
 
 def _members(path: Path) -> list[str] | None:
-    """Names of the files in a plain archive; None of Office files, x3p, NumPy."""
+    """Return the names of the files in a plain archive; None for Office files, x3p and NumPy."""
     try:
         with zipfile.ZipFile(path) as archive:
             parts = [info for info in archive.infolist() if not info.is_dir()]
@@ -119,14 +119,14 @@ def _members(path: Path) -> list[str] | None:
     if any(name.split("/")[-1] in _OFFICE for name in names):
         return None
     if holds_arrays(path):
-        return None  # an archive of NumPy's arrays is read as a whole
+        return None  # an archive of NumPy arrays is read as a whole
     for part in parts:
         _refuse_outside(path, part)
     return [name for name in names if not name.startswith("__MACOSX/")]
 
 
 def _refuse_outside(path: Path, part: zipfile.ZipInfo) -> None:
-    """Refuse a member that is a link, or whose name leads out of the archive."""
+    """Raise if a member is a link, or its name leads outside the archive."""
     name = part.filename.replace("\\", "/")
     outside = name.startswith("/") or name[1:2] == ":" or ".." in name.split("/")
     if outside or stat.S_ISLNK(part.external_attr >> 16):
@@ -167,17 +167,17 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
         with zipfile.ZipFile(path) as archive, archive.open(names[0]) as source:
             _refuse_larger(archive.getinfo(names[0]).file_size, size, path)
             first = source.read(_CHUNK)
-            above = _text_beside(archive, [name for name in every if name != names[0]], first)
+            above = _readme_text(archive, [name for name in every if name != names[0]], first)
             _copy(_Chained(above + first, source), target, size, path)
         return target
     except ZIP_DAMAGE as error:
         raise ReadError(f"this compressed file is damaged: {brief(error)}", where=path) from error
 
 
-def _text_beside(archive: zipfile.ZipFile, names: list[str], first: bytes) -> bytes:
-    """Return the text of the readmes in an archive, to stand above a table of text as its header.
+def _readme_text(archive: zipfile.ZipFile, names: list[str], first: bytes) -> bytes:
+    """Return the readmes of an archive, to be used as header of its text table.
 
-    What is not plain text of the table's own encoding stays away.
+    Readmes that are not plain text in the table's encoding are left out.
     """
     if b"\0" in first or not _is_utf8(first):
         return b""
@@ -200,7 +200,7 @@ def _is_utf8(text: bytes) -> bool:
 
 
 class _Chained:
-    """What was read of a file already, and then the rest of it."""
+    """Stream of bytes already read, followed by the rest of a file."""
 
     def __init__(self, first: bytes, rest: _Source):
         self._first, self._rest = first, rest
@@ -211,7 +211,7 @@ class _Chained:
 
 
 def _copy(source: _Source, target: Path, size: int, path: Path) -> None:
-    """Copy what is unpacked, and stop where it becomes larger than data can be."""
+    """Copy unpacked data, and stop if it exceeds the limit."""
     done = 0
     with target.open("wb") as file:
         while part := source.read(_CHUNK):

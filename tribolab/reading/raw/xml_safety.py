@@ -1,4 +1,4 @@
-"""XML that was not made to harm: no entity from outside, none that expands, no endless depth."""
+"""Safe parsing of XML: no external entities, no expanding entities, limited depth."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ _BLOCK = 1 << 16
 
 
 class _RootReachedError(Exception):
-    """The declarations of a file end here."""
+    """Raised at the end of the declarations of a file."""
 
 
 def parsed(path: Path, text: bytes) -> ElementTree.Element:
-    """Parse XML; names lose their namespaces, which makers choose freely.
+    """Parse XML, without namespaces, which differ between manufacturers.
 
-    An internal DTD is allowed, as ISO's soft gauges have one, with entities that are plain text.
+    An internal DTD with plain-text entities is allowed, as in ISO softgauges.
 
     Raises
     ------
     ReadError
-        If it is damaged, or declares an entity from outside the file or one that expands others.
+        If it is damaged, or declares an external entity or one that expands others.
     """
     refuse_deep(path, path.name, [text])
     try:
@@ -45,7 +45,7 @@ def parsed(path: Path, text: bytes) -> ElementTree.Element:
 
 
 def _check_declarations(path: Path, text: bytes) -> None:
-    """Refuse entities and default attributes that are no short text, before any is expanded."""
+    """Raise for entities and default attributes other than short text, before expansion."""
     letters = 0
 
     def refuse(what: str) -> Never:
@@ -80,12 +80,12 @@ def _check_declarations(path: Path, text: bytes) -> None:
 
 
 def refuse_deep(path: Path, name: str, blocks: Iterable[bytes]) -> None:
-    """Refuse XML, given in blocks, whose elements lie too deep in one another.
+    """Raise if XML, given in blocks, is nested too deeply.
 
     Raises
     ------
     ReadError
-        If they do.
+        If it is nested too deeply.
     """
     depth = 0
     for block in blocks:
@@ -99,7 +99,7 @@ def refuse_deep(path: Path, name: str, blocks: Iterable[bytes]) -> None:
 
 
 def _steps(block: bytes) -> np.ndarray:
-    """Down (1) and up (-1) of each tag whose first two letters stand in a block."""
+    """Return the depth change, +1 or -1, of each tag in a block."""
     letters = np.frombuffer(block, dtype=np.uint8)
     starts = np.flatnonzero(letters[:-1] == ord("<"))
     second = letters[starts + 1]

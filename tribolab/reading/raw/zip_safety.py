@@ -1,4 +1,4 @@
-"""Zip archives, workbooks and x3p among them, that unpack to more than a measurement can be."""
+"""Safety checks of zip archives, including workbooks and x3p, against zip bombs."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from tribolab.reading.raw.xml_safety import refuse_deep
 _BLOCK = 1 << 20
 
 
-# what zipfile raises on archives that are damaged, encrypted or packed in a way it does not know
+# exceptions of zipfile for damaged, encrypted or unsupported archives
 ZIP_DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, RuntimeError, ValueError),
 )
 
 
 def refuse_bomb(path: Path) -> None:
-    """Refuse an archive that unpacks to far more than it is, or whose XML is too deep.
+    """Raise if an archive unpacks to far more than its size, or has too deep XML.
 
     Raises
     ------
     RefusedError
-        If it is one.
+        If the archive exceeds a limit.
     """
     size = path.stat().st_size
     with zipfile.ZipFile(path) as archive:

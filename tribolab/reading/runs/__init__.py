@@ -1,1 +1,1 @@
-"""One run in SI units from the tables of its files."""
+"""Assembly of one run in SI units from the tables of its files."""

@@ -1,4 +1,4 @@
-"""What is known of a run's second log: whether it is there, and how its clock was matched."""
+"""Information on a run's second log: whether it exists, and how its clock was aligned."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.reading.text.first_bytes import peek
 
 
 class CompanionFacts(TypedDict, total=False):
-    """What is known of a companion log; see `describe_companion`."""
+    """Information on a companion log; see `describe_companion`."""
 
     missing: str
     refused: str
@@ -31,7 +31,7 @@ class CompanionFacts(TypedDict, total=False):
 def describe_companion(
     path: str | Path, instrument: str | Path | None = None, log: Signals | None = None
 ) -> CompanionFacts:
-    """Say what was found of a raw file's companion log, and how the clocks were matched.
+    """Return information on a raw file's companion log and the alignment of its clock.
 
     Parameters
     ----------
@@ -40,15 +40,15 @@ def describe_companion(
     instrument
         As for `tribolab.read`.
     log
-        Signals of the main log alone, where they are read already.
+        Signals of the main log, if already read.
 
     Returns
     -------
     dict
-        Empty if the instrument writes one log only. ``missing`` is the name of a companion that
-        is not there, ``refused`` why it cannot be used or its clock not be matched. Else
-        ``instrument``, ``shift_s``, ``uncertainty_s``, ``source`` ("estimated" or "none") and
-        ``ways`` (name of a way to tell the shift -> what it tells).
+        Empty if the instrument writes one log only. ``missing`` is the name of an absent companion,
+        ``refused`` the reason why it or its clock cannot be used. Otherwise ``instrument``,
+        ``shift_s``, ``uncertainty_s``, ``source`` ("estimated" or "none") and ``ways`` (result by
+        name of the method).
     """
     try:
         dialect = _pairing(Path(path), instrument)
@@ -76,7 +76,7 @@ def describe_companion(
 
 
 def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:
-    """Return the dialect of a main log that has a second one."""
+    """Return the dialect of a main log with a second log."""
     if instrument is None and peek(path).format == "netcdf":
         return None
     dialect = load_dialect(instrument) if instrument else recognise(path)

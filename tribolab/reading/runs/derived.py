@@ -1,4 +1,4 @@
-"""Quantities of a run that no column holds: formulas of columns and of values beside the table."""
+"""Derived quantities of a run: formulas of columns and of values outside the table."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.runs.return_strokes import goes_back
 from tribolab.units.quantities import QUANTITIES, quantity
 
-_LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: a light one, and none
-_MIN_SAMPLES_OF_ZERO = 20  # samples that tell a zero
-_MOVES, _ONE_SPEED = 0.5, 0.1  # of the speed: less is starting, and more is another speed
-_NO_CONTACT = 0.02  # share of the greatest normal stress below which nothing is pressed
+_LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: light load, and no load
+_MIN_SAMPLES_OF_ZERO = 20  # samples needed for a zero
+_MOVES, _ONE_SPEED = 0.5, 0.1  # shares of the usual speed: starting, and same speed
+_NO_CONTACT = 0.02  # share of the greatest normal stress below which there is no contact
 
 
 def add_derived(
@@ -37,7 +37,7 @@ def add_derived(
     where: str,
     dialect: Dialect,
 ) -> None:
-    """Add the quantities that follow by formula, and take out what only formulas needed.
+    """Add quantities computed by formulas, and remove columns needed only for them.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def add_derived(
     symbols
         SI units of the symbols.
     attrs
-        Attributes of the run, which hold the values beside the table; what each quantity follows
-        from is added as ``derived``.
+        Attributes of the run, including values outside the table; the formulas are added as
+        ``derived``.
     rows
         Number of rows.
     where
@@ -58,10 +58,10 @@ def add_derived(
     Raises
     ------
     ReadError
-        If something that a formula needs is not in this file, or the units do not fit. All that is
-        missing is told at once.
+        If an input of a formula is missing, or units do not match. The message lists all missing
+        inputs.
     """
-    # only formulas want units, whose library a quick answer does not load
+    # units are needed for formulas only; their library loads slowly
     known = _operands(columns, symbols, attrs, dialect) if dialect.derived else {}
     missing, said = [], {}
     for rule in dialect.derived:
@@ -98,9 +98,9 @@ def add_derived(
 
 
 def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: Dialect) -> None:
-    """Add the rotation speed that the header states, as if a column had it.
+    """Add the rotation speed stated in the header as a column.
 
-    It holds while the rig slides at one speed; of several speeds nobody knows which one it is.
+    It applies to a run at one speed; for several speeds it would be ambiguous.
     """
     turns = [v for v in dialect.value if v.unit is not None and v.si_unit == "rad/s"]
     stated = [number for value in turns if (number := _number(value, attrs))]
@@ -116,9 +116,9 @@ def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: D
 def _add_ratio_of_stresses(
     columns: dict[str, np.ndarray], said: dict[str, str], attrs: Json
 ) -> None:
-    """Where a run that slides has stresses in place of forces, their ratio is the coefficient.
+    """Add the coefficient of friction of a run that has stresses instead of forces.
 
-    What the sensors show while nothing is pressed is taken off first, and told.
+    The sensor readings without contact are subtracted first, and noted.
     """
     slides = {"sliding_velocity", "position", "rotation_speed", "set_speed"} & set(columns)
     known = {"friction_force", "friction_coefficient"} & set(columns)
@@ -139,10 +139,9 @@ def _add_ratio_of_stresses(
 
 
 def _without_contact(normal: np.ndarray) -> np.ndarray:
-    """Which samples lie at one level far below the usual stress: nothing is pressed there.
+    """Return a mask of samples without contact: one level far below the usual stress.
 
-    A sensor without load shows its zero. Readings far from the usual one of such samples are ramps
-    of the load.
+    A sensor without load shows its zero; other small readings are ramps of the load.
     """
     usual = np.nanpercentile(np.abs(normal), 75)
     light = np.abs(normal) < _LIGHT * usual
@@ -164,7 +163,7 @@ def _evaluated(
 
 
 def _stated_zeros(said: Mapping[str, str], dialect: Dialect) -> Json:
-    """Say which zeros of the friction the text of the file states, and formulas take off."""
+    """Return which stated zeros of the friction are subtracted by formulas."""
     zeros = {value.name for value in dialect.value if value.name.endswith("_zero")}
     return {
         name: ", ".join(sorted(zeros & names_in(parse_formula(formula))))
@@ -189,6 +188,6 @@ def _operands(
 
 
 def _number(value: Value, attrs: Json) -> float | None:
-    """Return a value beside the table, if it was there and is a number."""
+    """Return a value outside the table, if it is available and numeric."""
     number = attrs.get(value.attribute) if value.unit is not None else None
     return float(number) if isinstance(number, float | int) else None

@@ -1,4 +1,4 @@
-"""What was understood of one raw file, for whoever wants to know before an analysis."""
+"""Summary of the interpretation of one raw file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.units.quantities import QUANTITIES
 
 
 class ColumnFacts(TypedDict):
-    """What a quantity was called, and between which values it lies, in SI."""
+    """Label of a quantity, and its range in SI."""
 
     label: str
     unit: str
@@ -24,7 +24,7 @@ class ColumnFacts(TypedDict):
 
 
 class FileFacts(TypedDict):
-    """What was understood of a raw file; see `file_facts`."""
+    """Interpretation of a raw file; see `file_facts`."""
 
     file: str
     instrument: str
@@ -42,22 +42,22 @@ class FileFacts(TypedDict):
 
 
 def file_facts(log: Signals, path: PathLike, instrument: Instrument | None = None) -> FileFacts:
-    """Say what was understood of one raw file.
+    """Return a summary of how one raw file was interpreted.
 
     Parameters
     ----------
     log
-        The signals as read from it alone.
+        Signals of this file alone.
     path, instrument
-        What it was read from, and as which instrument's if that was said.
+        The file, and the instrument if it was stated.
 
     Returns
     -------
     dict
         ``file``, ``instrument``, ``title``, ``columns`` (quantity -> label, unit, minimum and
         maximum in SI), ``not_used``, ``rows``, ``duration_s``, ``interval_s`` (median),
-        ``longest_interval_s``, ``steps``, ``left_out`` (rows of the file that are not in the run,
-        and why; empty if all are) and ``metadata``.
+        ``longest_interval_s``, ``steps``, ``left_out`` (rows left out, with the reason; empty
+        without any) and ``metadata``.
     """
     time, signals, attrs = log
     gaps = np.diff(time)

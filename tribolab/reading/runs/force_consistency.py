@@ -1,4 +1,4 @@
-"""Forces that follow by formula, compared with the friction coefficient that the file states."""
+"""Comparison of computed forces with the friction coefficient stated in the file."""
 
 from __future__ import annotations
 
@@ -7,26 +7,25 @@ import numpy as np
 from tribolab.arrays.medians import median
 from tribolab.core.untyped import Json
 
-_APART = 0.02  # relative; both are computed of the same readings, and written with three digits
-_LOADED = 0.1  # of the largest load
-_FEW = 5  # rows that tell
+_APART = 0.02  # relative; both come from the same readings, rounded to three digits
+_LOADED = 0.1  # share of the largest load
+_FEW = 5  # rows needed
 _FORCES = ("friction_force", "normal_force")
 
 
 def keep_forces_that_agree(columns: dict[str, np.ndarray], attrs: Json) -> None:
-    """Leave out forces by formula whose ratio is not the coefficient beside them.
+    """Remove computed forces whose ratio contradicts the recorded coefficient.
 
-    A torque and an axial force make the forces of a contact by its geometry. Where a file states
-    the coefficient, too, that tells whether the geometry is the right one.
+    Contact forces follow from torque and axial force by the geometry. If the file also has the
+    coefficient, it shows whether the geometry is right.
 
     Parameters
     ----------
     columns
         Arrays in SI by quantity (time); changed in place.
     attrs
-        Attributes of the run, whose ``derived`` says what follows by formula.
-        ``ratio_to_stated_coefficient`` is added, and where forces are left out,
-        ``forces_left_out`` with the reason.
+        Attributes of the run with the formulas in ``derived``. ``ratio_to_stated_coefficient`` is
+        added, and if forces are removed, ``forces_left_out`` with the reason.
     """
     made = [name for name in _FORCES if name in attrs.get("derived", {})]
     if not made or not {"friction_coefficient", *_FORCES} <= set(columns):

@@ -1,4 +1,4 @@
-"""Whether the ratio of two forces can be a friction coefficient, or they were mixed up."""
+"""Plausibility of the ratio of two forces as friction coefficient."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 
 from tribolab.arrays.medians import median
 
-LARGEST = 10.0  # soft rubber on glass reaches some 4, gels and gecko feet at light loads more
-SMALLEST = 2e-4  # superlubric contacts come to 1e-3 and a little below
-_LOADED = 0.5  # of the largest load
-_FEW = 20  # rows under load that tell
+LARGEST = 10.0  # soft rubber on glass reaches 4, gels and gecko feet at light loads more
+SMALLEST = 2e-4  # superlubric contacts reach 1e-3 and slightly less
+_LOADED = 0.5  # share of the largest load
+_FEW = 20  # rows under load needed
 
 
 def doubt_about_coefficient(recorded: np.ndarray) -> str:
-    """Say so where a recorded coefficient is out of the question; else "".
+    """Return a doubt about an implausible recorded coefficient; else "".
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def doubt_about_coefficient(recorded: np.ndarray) -> str:
 
 
 def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
-    """Say so where the ratio of the forces is out of the question for friction; else "".
+    """Return a doubt about forces whose ratio is implausible for friction; else "".
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
     loaded = normal > _LOADED * normal.max()
     if loaded.sum() < _FEW:
         return ""
-    # a drive to and fro passes through zero: not the middle of its forces is their size
+    # a reciprocating drive passes through zero, so the median of the forces is not their size
     ratio = float(np.percentile(friction[loaded], 75) / median(normal[loaded]))
     if ratio == 0 or SMALLEST <= ratio <= LARGEST:
         return ""

@@ -1,4 +1,4 @@
-"""Signals of a run from the contents of its files: columns in a row, on one clock, in SI."""
+"""Assembly of a run from the contents of its files: joined columns on one clock, in SI."""
 
 from __future__ import annotations
 
@@ -39,19 +39,19 @@ _WITHOUT_A_FILE = "described without a file of it: compare the columns with what
 
 
 def gather(logs: LogDialects, zero: str | None = None) -> Signals:
-    """Make the signals of one run of the files of one instrument.
+    """Return the signals of one run from the files of one instrument.
 
     Parameters
     ----------
     logs
         The files, each with its dialect.
     zero
-        From where the zero of the friction signals is read, before what the dialect says.
+        Source of the zero of the friction signals; takes precedence over the dialect.
 
     Raises
     ------
     ReadError
-        If a file is not what its dialect says, or they do not make one run.
+        If a file does not match its dialect, or the files do not form one run.
     """
     logs = [(path, as_written(path, dialect)) for path, dialect in logs]
     dialect = logs[0][1]
@@ -77,7 +77,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     time = mended.time
     if mended.keep is not None:
         time = chosen(time, mended.keep)
-        for name in columns:  # one by one, so that what is left out does not stay in memory
+        for name in columns:  # one by one, so that removed rows are freed
             columns[name] = chosen(columns[name], mended.keep)
     rows = len(time)
     time, columns, together = sampled_together(columns, time)
@@ -113,20 +113,20 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
 
 
 def _told(attrs: Json, name: str) -> Mapping[str, Any]:
-    """Return what an attribute says of each quantity; nothing if it is not there."""
+    """Return an attribute that is a mapping by quantity; empty without one."""
     told = attrs.get(name, {})
     return told if isinstance(told, Mapping) else {}
 
 
 def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[str, str]:
-    """Return from where the zeros are read of what follows by formula."""
+    """Return the source of the zeros of computed quantities."""
     rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
     rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
     return {name: text for name, text in rules.items() if name in _told(attrs, "derived")}
 
 
 def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
-    """Return the columns of a blank run, beside the run or a table in it, and what follows."""
+    """Return the columns of a blank run, from another file or a table, with computed quantities."""
     if dialect.tables is not None and name.startswith("table "):
         # imported late for a quick start
         from tribolab.reading.content.containers import read_table
@@ -145,7 +145,7 @@ def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
 
 
 def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:
-    """SI units of what is no quantity, and there for formulas only."""
+    """Return the SI units of symbols that are used in formulas only."""
     of_steps = {
         value.name: value.si_unit
         for value in dialect.value
@@ -156,7 +156,7 @@ def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:
 
 
 def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]:
-    """Arrays of the whole run, with ``step`` and ``cycle`` where there are several."""
+    """Return the arrays of the whole run, with ``step`` and ``cycle`` if there are several."""
     pieces = [piece for content in contents for piece in content.pieces]
     lengths = [len(piece.columns["time"]) for piece in pieces]
     names = dict.fromkeys(name for piece in pieces for name in piece.columns)
@@ -203,7 +203,7 @@ _TIME_FROM = {
 
 
 def _speed_from(dialect: Dialect) -> str:
-    """Say what the sliding speed is from: what only texts state of it nothing measures."""
+    """Return the source of the sliding speed; "stated" if a formula uses stated values only."""
     formulas = [rule.formula for rule in dialect.derived if rule.quantity == "sliding_velocity"]
     if not formulas:
         return dialect.speed.source
@@ -213,7 +213,7 @@ def _speed_from(dialect: Dialect) -> str:
 
 
 def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Json:
-    """Provenance, and what else the run should know of its files."""
+    """Return provenance and other information on the run's files."""
     # imported late: looks up the installed package
     from tribolab.version import __version__
 

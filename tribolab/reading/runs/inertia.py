@@ -1,4 +1,4 @@
-"""The force that a moving mass between contact and sensor takes to be accelerated."""
+"""Inertial force of the moving mass between contact and force sensor."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tribolab.core.errors import Cure, ReadError
 from tribolab.units.stamping import stamp
 
 _MOTION = ("sliding_velocity", "position")
-_WIDEST = 200  # samples on either side of a window
-_MAD = 0.6745  # of a normal distribution with a standard deviation of 1
+_WIDEST = 200  # most samples on either side of a window
+_MAD = 0.6745  # median absolute deviation of a normal distribution with standard deviation 1
 
 
 class Acceleration(NamedTuple):
-    """Acceleration [m/s2] (time), its standard error, and how it was smoothed.
+    """Acceleration [m/s2] (time), its standard error, and its smoothing.
 
-    `order` is that of the derivative of the signal, `half_window` the samples on either side.
+    `order` is the order of the derivative, `half_window` the number of samples on either side.
     """
 
     value: np.ndarray
@@ -29,7 +29,7 @@ class Acceleration(NamedTuple):
     half_window: int
 
     def gain(self, period: float) -> float:
-        """Return what smoothing leaves of a sine with a period [samples]."""
+        """Return the factor by which smoothing reduces a sine with a period [samples]."""
         turned = 2 * np.pi / period
         place = np.arange(-self.half_window, self.half_window + 1.0)
         weights = _weights(self.order, self.half_window)
@@ -43,24 +43,24 @@ def acceleration(
     accuracy: float,
     widest: int = _WIDEST,
 ) -> Acceleration | None:
-    """Return the acceleration of a run, smoothed no further than an accuracy wants.
+    """Return the acceleration of a run, smoothed only as far as needed for an accuracy.
 
     Parameters
     ----------
     signals
-        With ``position`` [m] or ``sliding_velocity`` [m/s] (time).
+        Signals with ``position`` [m] or ``sliding_velocity`` [m/s] (time).
     time
         [s] (time).
     accuracy
         Wanted standard error [m/s2].
     widest
-        Samples on either side of a window, at most.
+        Most samples on either side of a window.
 
     Returns
     -------
     Acceleration or None
-        By parabolas fitted to windows (Savitzky and Golay [1]_), as narrow as the noise of the
-        signal allows; None where neither signal is there or has 5 samples.
+        From parabolas fitted to windows (Savitzky and Golay [1]_), as narrow as the noise allows;
+        None without a signal of at least 5 samples.
 
     References
     ----------
@@ -82,7 +82,7 @@ def acceleration(
     values, order = usable[0]
     step = float(median(np.diff(time)))
     noise = _noise(values)
-    # variance of the slope, and of the second derivative, of a parabola through 2 k + 1 points
+    # variance of slope and second derivative of a parabola through 2 k + 1 points
     half = np.arange(2, max(min(widest, (time.size - 1) // 2), 2) + 1)
     points = 2.0 * half + 1
     if order == 1:
@@ -96,13 +96,13 @@ def acceleration(
 
 
 def _noise(values: np.ndarray) -> float:
-    """Noise of single samples: third differences take out what is smooth."""
+    """Return the noise of single samples, from third differences."""
     rough = np.abs(np.diff(values, 3))
     return float(median(rough) / _MAD / np.sqrt(20))
 
 
 def _derivative(time: np.ndarray, values: np.ndarray, order: int, half: int) -> np.ndarray:
-    """First or second derivative by parabolas over windows; near the ends that of the next one."""
+    """Return the first or second derivative by windowed parabolas; constant near the ends."""
     inner = np.correlate(values, _weights(order, half), mode="valid")
     spacing = (time[2 * half :] - time[: -2 * half]) / (2 * half)
     inner = inner / spacing**order
@@ -110,7 +110,7 @@ def _derivative(time: np.ndarray, values: np.ndarray, order: int, half: int) -> 
 
 
 def _weights(order: int, half: int) -> np.ndarray:
-    """Weights of the samples of a window in the derivative of its parabola, per spacing."""
+    """Return the weights of a window's samples in the derivative of its parabola, per spacing."""
     place = np.arange(-half, half + 1.0)
     if order == 1:
         return np.asarray(place / np.sum(place**2))
@@ -119,36 +119,36 @@ def _weights(order: int, half: int) -> np.ndarray:
 
 
 def take_inertia(run: xr.Dataset, mass: float, where: str, **said: str | float) -> xr.Dataset:
-    """Take the force that accelerates a mass out of the friction force.
+    """Subtract the inertial force of a mass from the friction force.
 
     Parameters
     ----------
     run
-        With ``friction_force`` and ``position`` or ``sliding_velocity`` (time).
+        Run with ``friction_force`` and ``position`` or ``sliding_velocity`` (time).
     mass
         Between contact and sensor [kg].
     where
         The run, for messages.
     **said
-        Attributes that say where the mass is known from.
+        Attributes on the source of the mass.
 
     Returns
     -------
     xarray.Dataset
-        The run with ``inertial_force`` [N] (time), and without it in ``friction_force``. Attributes
-        ``moving_mass_kg``, ``inertial_force_largest_N`` (that of 99.9 % of the samples is less) and
-        ``inertial_force_noise_N``, what noise of the motion is in it.
+        The run with ``inertial_force`` [N] (time), which is subtracted from ``friction_force``.
+        Attributes ``moving_mass_kg``, ``inertial_force_largest_N`` (99.9 % quantile) and
+        ``inertial_force_noise_N`` (its noise from the motion signal).
 
     Raises
     ------
     ReadError
-        If there is no friction force, or neither position nor velocity in all rows.
+        If friction force is missing, or position and velocity are incomplete.
 
     Notes
     -----
-    The sensor shows F + m a, both counted along the motion. Where strokes show that it counts
-    friction against it, the inertia is counted so as well. The acceleration is smoothed until its
-    noise adds no more than the force has itself.
+    The sensor reads F + m a, both positive along the motion. If strokes show the opposite sign of
+    friction, the sign of the inertial force is also reversed. The acceleration is smoothed until
+    its noise does not exceed that of the force.
     """
     time = run["time"].values
     signals = {name: run[name].values for name in _MOTION if name in run}
@@ -163,7 +163,7 @@ def take_inertia(run: xr.Dataset, mass: float, where: str, **said: str | float) 
             where=where,
             cure=Cure(*["leave moving_mass out"] * 3),
         )
-    inertia = _orientation(signals, force) * mass * known.value
+    inertia = _force_sign(signals, force) * mass * known.value
     attrs = dict(run["friction_force"].attrs)
     result = run.assign(
         friction_force=("time", force - inertia, attrs), inertial_force=("time", inertia)
@@ -176,8 +176,8 @@ def take_inertia(run: xr.Dataset, mass: float, where: str, **said: str | float) 
     return stamp(result, **(run.attrs | told | said))
 
 
-def _orientation(signals: Mapping[str, np.ndarray], force: np.ndarray) -> float:
-    """Return +1 where the force is counted along the motion, -1 where against it."""
+def _force_sign(signals: Mapping[str, np.ndarray], force: np.ndarray) -> float:
+    """Return +1 if the force is positive along the motion, else -1."""
     velocity = signals.get("sliding_velocity")
     velocity = np.gradient(signals["position"]) if velocity is None else velocity
     fast = np.abs(velocity) > 0.3 * np.quantile(np.abs(velocity), 0.95)

@@ -1,4 +1,4 @@
-"""Which files make one run: two logs where the instrument writes two, else one."""
+"""Grouping of files into runs: two logs if the instrument writes two, else one."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from tribolab.reading.dialect.find import Dialect, Instrument, every_dialect, lo
 def group_files(
     paths: Iterable[PathLike], instrument: Instrument | None = None
 ) -> list[list[Path]]:
-    """Put the files of each run together: two logs where the instrument writes two, else one.
+    """Group the files of each run: two logs if the instrument writes two, else one.
 
     Parameters
     ----------
     paths
         Raw files, in any order.
     instrument
-        The instrument; without it the naming rules of all known instruments are tried.
+        The instrument; by default the naming rules of all known instruments are tried.
 
     Returns
     -------
     list of list of Path
-        One list for each run, in the order of their first file; this instrument's main log comes
-        first. A file without its companion stands alone.
+        One list for each run, in the order of their first file; the main log comes first. A file
+        without its companion is a run of its own.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def group_files(
 
 
 def companion_path(path: Path, dialect: Dialect) -> Path | None:
-    """Return where the second log of a file would lie; None if there is none by its name."""
+    """Return the expected path of a file's second log; None if its name has none."""
     rule = dialect.pair
     if rule is None or not path.stem.endswith(rule.own):
         return None
@@ -60,7 +60,7 @@ def companion_path(path: Path, dialect: Dialect) -> Path | None:
 
 
 def companion_name(path: Path, dialect: Dialect) -> str:
-    """Return what the second log of a file would be called; nothing if there is one log only."""
+    """Return the expected name of a file's second log; "" if there is one log only."""
     if dialect.pair is None:
         return ""
     other = companion_path(path, dialect)

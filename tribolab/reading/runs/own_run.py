@@ -1,4 +1,4 @@
-"""Runs as netCDF: tribolab's own, and what others call so."""
+"""Runs as netCDF, written by tribolab or others."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ from tribolab.units.quantities import QUANTITIES
 
 _NUMBERS = "fiub"
 _DESCRIBE = "of others a description says which is which (raw_data_schema/README.md)"
-# attributes that are reckoned with; of another kind they say nothing
+# expected types of used attributes; others are ignored
 _KINDS: Mapping[str, type | tuple[type, ...]] = {"columns_used": dict, "findings": (list, tuple)}
 _UNITS = ("_s", "_m", "_N", "_m_s", "_m_per_s", "_Hz", "_K", "_Pa")
 _COUNTS = {"rows_not_covered", "rows_left_out", "rows_in_file"}
 
 
 def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
-    """Read a run from netCDF, whoever wrote it.
+    """Read a run from a netCDF file of any origin.
 
     Parameters
     ----------
     path
         The file.
     content
-        Where its content lies, if it is compressed.
+        Path of its content, if it is compressed.
 
     Returns
     -------
     xarray.Dataset
-        Dim ``time`` [s]. Variables that are no known quantity and not numbers along time are left
-        out, and named in ``columns_not_used``; so are attributes of another kind than a run's.
+        Dim ``time`` [s]. Variables that are unknown or not numeric over time are left out and
+        listed in ``columns_not_used``, as are attributes of unexpected types.
 
     Raises
     ------
     ReadError
-        If it cannot be read, has no time, or a quantity of a run is no number along time.
+        If it cannot be read, has no time, or a quantity is not numeric over time.
     """
     # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_netcdf
@@ -51,7 +51,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     cure = "columns of one length, with names and units, are read as they are: " + _DESCRIBE
     try:
         run = read_netcdf(content or path, group="run?")
-    except CrashedError as error:  # HDF5 that is no netCDF may be sound all the same
+    except CrashedError as error:  # HDF5 other than netCDF may still be valid
         check_self_contained(content or path)
         what = "this HDF5 file is no netCDF"
         raise UnknownFileError(what, where=path, cure=cure) from error

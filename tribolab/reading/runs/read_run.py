@@ -1,4 +1,4 @@
-"""Read a run: one raw file, the two logs of a run, or the files of its cycles."""
+"""Reading of a run: one raw file, two logs, or the files of its cycles."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Reading(TypedDict, total=False):
-    """What may be said of reading a run, besides its files and instrument; see `tribolab.read`."""
+    """Options for reading a run besides its files and instrument; see `tribolab.read`."""
 
     pair: bool
     clock_shift: str | float | None
@@ -40,24 +40,24 @@ def read_run(
     zero: str | None = None,
     moving_mass: str | float | None = None,
 ) -> xr.Dataset:
-    """Read one run from its raw file or files, whose names are taken as they are.
+    """Read one run from its raw file or files; names are not patterns.
 
     Parameters
     ----------
     path, instrument, pair, clock_shift, zero, moving_mass
-        As for `tribolab.read`, but for patterns.
+        As for `tribolab.read`, but without patterns.
 
     Returns
     -------
     xarray.Dataset
-        As from `tribolab.read`.
+        As for `tribolab.read`.
 
     Raises
     ------
     ReadError
-        If the file cannot be read; the message says what, where and how to mend it.
+        If the file cannot be read; the message states the problem, its place and a remedy.
     ConfigError
-        If there is no such instrument.
+        If the instrument does not exist.
     """
     paths = [Path(path)] if isinstance(path, str | Path) else [Path(p) for p in path]
     if not paths:
@@ -66,7 +66,7 @@ def read_run(
     if len(paths) == 1 and (own := _own_run(paths[0], instrument)) is not None:
         return own
     dialects = _dialects(paths, instrument)
-    main, companions = _sorted_out(paths, dialects)
+    main, companions = _split_companions(paths, dialects)
     if pair and len(main) == 1 and not companions:
         companions = _companion(*main[0])
     log = gather(main, zero)
@@ -81,7 +81,7 @@ def read_run(
 
 
 def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
-    """Read one raw file by itself, as arrays: `read_run` without a companion, at once.
+    """Read one raw file without its companion as arrays; faster than `read_run`.
 
     Parameters
     ----------
@@ -91,9 +91,9 @@ def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
     Raises
     ------
     ReadError
-        If the file cannot be read; the message says what, where and how to mend it.
+        If the file cannot be read; the message states the problem, its place and a remedy.
     ConfigError
-        If there is no such instrument.
+        If the instrument does not exist.
     """
     file = Path(path)
     if (own := _own_run(file, instrument)) is not None:
@@ -106,7 +106,7 @@ def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
 
 
 def with_companion(log: Signals, path: Path, dialect: Dialect) -> Signals:
-    """Return a log together with its second one, whose clock is matched by the signals.
+    """Return a log merged with its second log, whose clock is aligned by the signals.
 
     Parameters
     ----------
@@ -115,14 +115,14 @@ def with_companion(log: Signals, path: Path, dialect: Dialect) -> Signals:
     path
         The second log.
     dialect
-        That of the main log, which names that of the second.
+        Dialect of the main log, which names that of the second.
 
     Raises
     ------
     ReadError
         If the second log cannot be read, or does not belong to the run.
     """
-    assert dialect.pair is not None  # whoever asks has found the second log by it
+    assert dialect.pair is not None  # the caller found the second log by it
     return _joined(log, [(path, load_dialect(dialect.pair.instrument))], None)
 
 
@@ -135,7 +135,7 @@ def _joined(log: Signals, companions: LogDialects, shift: float | None) -> Signa
 
 
 def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:
-    """Take the inertia of a mass out, if one is stated."""
+    """Subtract the inertial force of a mass, if one is stated."""
     if mass is None:
         return run
     # imported late for a quick start
@@ -148,7 +148,7 @@ def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:
 
 
 def _own_run(path: Path, instrument: Instrument | None) -> xr.Dataset | None:
-    """Return a run that stands in a netCDF file; None of any other file."""
+    """Return the run in a netCDF file; None for any other file."""
     if instrument is not None and load_dialect(instrument).format in ("hdf5", "binary"):
         return None
     if (first := peek(path)).format != "netcdf":
@@ -160,7 +160,7 @@ def _own_run(path: Path, instrument: Instrument | None) -> xr.Dataset | None:
 
 
 def _dialects(paths: list[Path], instrument: Instrument | None) -> list[Dialect]:
-    """Dialect of each file; a companion log has its own, told by the ending of its name."""
+    """Return the dialect of each file; companions are recognised by their names."""
     if instrument is None:
         dialects = [recognise(path) for path in paths]
     else:
@@ -177,7 +177,9 @@ def _dialects(paths: list[Path], instrument: Instrument | None) -> list[Dialect]
     return dialects
 
 
-def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[LogDialects, LogDialects]:
+def _split_companions(
+    paths: list[Path], dialects: list[Dialect]
+) -> tuple[LogDialects, LogDialects]:
     """Separate main logs from companions."""
     logs = list(zip(paths, dialects, strict=True))
     second = {dialect.pair.instrument for dialect in dialects if dialect.pair}
@@ -193,7 +195,7 @@ def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[LogDialects
 
 
 def _companion(path: Path, dialect: Dialect) -> LogDialects:
-    """Return the companion log, if the instrument writes one and it lies beside the file."""
+    """Return the companion log, if the instrument writes one and it is next to the file."""
     other = companion_path(path, dialect)
     if other is None or dialect.pair is None or not other.exists():
         return []

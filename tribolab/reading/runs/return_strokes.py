@@ -1,28 +1,28 @@
-"""Ways on which nothing presses: a sled that is lifted while its carriage goes back."""
+"""Detection of return strokes without load, e.g. of a lifted sled."""
 
 from __future__ import annotations
 
 import numpy as np
 
-_BLOCKS = 4000  # of rows, whose means tell where it turns
-_WAY = 0.05  # of the whole range: what is shorter is no way
-_BEGINNING, _CLEAR = 5, 4.0  # rows, and times the scatter: beyond it, it has set off
-_MORE = 3  # rows
-_SLOW = 0.25  # of the usual speed on a way back: what is slower is a rest at its end
+_BLOCKS = 4000  # blocks of rows, whose means show the turning points
+_WAY = 0.05  # share of the whole range below which a motion is not a stroke
+_BEGINNING, _CLEAR = 5, 4.0  # rows, and multiple of the scatter, beyond which motion has started
+_MORE = 3  # rows of margin
+_SLOW = 0.25  # share of the usual speed on a return stroke below which it is at rest
 
 
 def goes_back(position: np.ndarray) -> np.ndarray:
-    """Return which rows lie on a way against the first one (time).
+    """Return a mask of rows in strokes opposite to the first one (time).
 
     Parameters
     ----------
     position
-        Along the sliding direction (time); rows without a value do not go back.
+        Position along the sliding direction (time); missing values are not in return strokes.
 
     Notes
     -----
-    Rests at the ends belong to no way. Where it turns is told by means of blocks of rows, so that
-    noise of the reading turns nothing.
+    Rests at the ends belong to no stroke. Turning points are found from means of blocks, so that
+    noise does not create any.
 
     Examples
     --------
@@ -49,17 +49,17 @@ def goes_back(position: np.ndarray) -> np.ndarray:
         moving = first + np.flatnonzero(steps > _SLOW * usual)
         if moving.size:
             start, stop = edges[moving[0]], edges[min(moving[-1] + 2, means.size)]
-            # a few rows more: none of the way is left that seems to be under load
-            start += max(_still(position[start:stop]) - _MORE, 0)
-            stop -= max(_still(position[start:stop][::-1]) - _MORE, 0)
+            # a margin of some rows, so that no loaded rest of the stroke remains
+            start += max(_rows_at_rest(position[start:stop]) - _MORE, 0)
+            stop -= max(_rows_at_rest(position[start:stop][::-1]) - _MORE, 0)
             back[start:stop] = True
     return back
 
 
-def _still(way: np.ndarray) -> int:
-    """Return how many rows at the beginning of a way, less than all, do not leave its first place.
+def _rows_at_rest(way: np.ndarray) -> int:
+    """Return the number of rows at rest at the beginning of a stroke.
 
-    The scatter of the reading is that of its differences from row to row.
+    The scatter is estimated from row-to-row differences.
     """
     steps = np.diff(way[np.isfinite(way)])
     scatter = 1.4826 * float(np.median(np.abs(steps - np.median(steps)))) if steps.size else 0.0
@@ -69,12 +69,12 @@ def _still(way: np.ndarray) -> int:
 
 
 def _turns(means: np.ndarray, least: float) -> list[int]:
-    """Return where a way begins or ends; the first is the beginning of the first way."""
+    """Return the turning points of strokes; the first is the start of the first stroke."""
     turns, low, high, way = [0], 0, 0, 0
     for place, value in enumerate(means.tolist()):
         low = place if value <= means[low] else low
         high = place if value >= means[high] else high
-        if way >= 0 and means[high] - value > least:  # it went up, or nobody knew
+        if way >= 0 and means[high] - value > least:  # upward, or direction still unknown
             turns += [high] if way else []
             way, low = -1, place
         elif way <= 0 and value - means[low] > least:

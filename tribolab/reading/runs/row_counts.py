@@ -1,9 +1,9 @@
-"""How many rows a run's files have, how many were left out, and why: attributes of the run.
+"""Numbers of rows in a run's files and of rows left out, with reasons, as attributes.
 
-``rows_in_file``; where rows were left out also ``rows_left_out`` and ``rows_left_out_why``, and
-``rows_left_out_meant``, the share that the dialect allows; ``rows_time_interpolated``. Of a
-companion log the same with ``companion_`` before it; ``rows_not_covered`` are those of the first
-log, before and after, of which the companion knows nothing.
+``rows_in_file``; if rows were left out also ``rows_left_out`` and ``rows_left_out_why``, and
+``rows_left_out_meant``, the share that the dialect allows; ``rows_time_interpolated``. For a
+companion log the same with the prefix ``companion_``; ``rows_not_covered`` counts rows of the first
+log outside the range of the companion.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ def row_attributes(kept: int, contents: list[Content], mended: Mended, dialect: 
     kept
         Rows of the run.
     contents
-        What the files hold.
+        Contents of the files.
     mended
-        What became of the rows when time was put in order.
+        Result of the repair of time.
     dialect
         The instrument's dialect.
 
@@ -61,7 +61,7 @@ def _counted(kept: int, reasons: Mapping[str, int]) -> Json:
 
 
 def rows_in_words(attrs: Mapping[str, Any]) -> str:
-    """Say how many rows of the file are not in the run, and why; empty where all are.
+    """Return the number of rows left out and the reason in words; "" without any.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def rows_in_words(attrs: Mapping[str, Any]) -> str:
 
 
 def with_companion_rows(merged: Signals, run: Signals, motion: Signals) -> Signals:
-    """Add to a merged run's attributes what its two logs lost, and what only one of them covers.
+    """Add the row counts of both logs, and the rows covered by one only, to a merged run.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The sliding speed of a run where no column holds it: by turns, strokes, or the set-point."""
+"""Sliding speed of a run without a speed column: from rotation, strokes, or the set-point."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ def add_speed(
     dialect: Dialect,
     of_steps: Mapping[str, np.ndarray] | None = None,
 ) -> None:
-    """Add the sliding speed as the dialect says that it comes about; nothing is invented.
+    """Add the sliding speed from the source stated in the dialect.
 
     Parameters
     ----------
     columns
         Arrays in SI by quantity (time); the speed is added.
     attrs
-        Attributes of the run, which hold the values beside the table; added to.
+        Attributes of the run, including values outside the table; changed in place.
     time
         [s] (time).
     where
@@ -42,7 +42,7 @@ def add_speed(
     Raises
     ------
     ReadError
-        If what the speed should follow from is not there.
+        If an input of the speed is missing.
     """
     source = dialect.speed.source
     if source == "rotation":
@@ -62,7 +62,7 @@ def keep_settings(
     where: str,
     dialect: Dialect,
 ) -> dict[str, np.ndarray]:
-    """Keep what columns say of a radius, a stroke or a frequency, before they are used up.
+    """Store columns of radius, stroke or frequency as settings, before they are removed.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def keep_settings(
     symbols
         SI units of the symbols.
     attrs
-        Attributes of the run; added to.
+        Attributes of the run; changed in place.
     where
         The run, for messages.
     dialect
@@ -80,14 +80,13 @@ def keep_settings(
     Returns
     -------
     dict
-        What the text before the steps, or a column, says differently from step to step, in SI
-        (time), by the key of ``[speed]``.
+        Settings that differ between steps, in SI (time), by key of ``[speed]``.
 
     Raises
     ------
     ReadError
-        If such a column goes neither in steps nor holds the same all along, or a step does not
-        state what others do.
+        If such a column is neither constant nor stepwise, or a step lacks a setting that others
+        state.
     """
     before_steps = {v.name: v.si_unit for v in dialect.value if v.source == "step" and v.unit}
     of_steps: dict[str, np.ndarray] = {}
@@ -165,7 +164,7 @@ def _by_strokes(
         )
     attrs |= {"stroke_m": stroke, "stroke_frequency_Hz": frequency}
     strokes = velocity_of_strokes(time, signals[0], stroke, frequency, speed.drive)
-    if strokes is None:  # the mean of both ways is known all the same
+    if strokes is None:  # the mean speed of both directions is known nevertheless
         attrs["set_speed_m_s"] = 2 * stroke * frequency
         attrs["strokes_not_seen_Hz"] = frequency
         return
@@ -183,18 +182,18 @@ def _by_strokes_of_steps(
     dialect: Dialect,
     of_steps: Mapping[str, np.ndarray],
 ) -> None:
-    """Take the strokes of each step by themselves, with its own length and frequency.
+    """Compute the velocity of strokes for each step, with its own length and frequency.
 
-    A frequency of zero is a rest. Where the friction of none turns over it has no sign, or each row
-    is a mean: then the mean speed of its strokes is the set speed of each row.
+    A frequency of zero is a rest. If friction reverses in no step, it has no sign or rows are
+    means: then the mean speed of the strokes is the set speed of each row.
     """
     changes = [np.flatnonzero(np.diff(values)) + 1 for values in of_steps.values()]
     bounds = np.unique(np.concatenate([[0], *changes, [len(time)]]))
-    if not _part(columns.get("step"), bounds):
+    if not _changes_with_steps(columns.get("step"), bounds):
         columns["step"] = np.repeat(np.arange(1, len(bounds)), np.diff(bounds)).astype(np.int32)
     velocity, mean_speed = np.zeros(len(time)), np.zeros(len(time))
     told: list[Json] = []
-    without: list[tuple[int, int, float]] = []  # where it does not turn over, and its frequency
+    without: list[tuple[int, int, float]] = []  # without reversal of friction, and its frequency
     for first, stop in zip(bounds[:-1], bounds[1:], strict=True):
         if any(values[first] == 0 for values in of_steps.values()):
             continue
@@ -222,7 +221,7 @@ def _by_strokes_of_steps(
         columns["set_speed"] = mean_speed
         return
     for first, last, frequency in without:
-        if (time[last] - time[first]) * frequency >= FEWEST_CYCLES:  # no pass to the next step
+        if (time[last] - time[first]) * frequency >= FEWEST_CYCLES:  # only steps with enough cycles
             raise ReadError(
                 f"the friction from {time[first]:.4g} to {time[last]:.4g} s does not turn over "
                 f"with the {frequency:.4g} Hz that are stated for it",
@@ -231,25 +230,25 @@ def _by_strokes_of_steps(
     columns["sliding_velocity"] = velocity
 
 
-def _part(step: np.ndarray | None, bounds: np.ndarray) -> bool:
-    """Whether numbers of steps are others wherever a setting changes."""
+def _changes_with_steps(step: np.ndarray | None, bounds: np.ndarray) -> bool:
+    """Whether step numbers change at every change of a setting."""
     inner = bounds[1:-1]
     return step is not None and bool((step[inner] != step[inner - 1]).all())
 
 
 def level_of_each(values: np.ndarray) -> np.ndarray | None:
-    """Return the level of each of some settings that go in steps; None where they do not.
+    """Return the level of each value of a stepwise setting; None if it is not stepwise.
 
     Parameters
     ----------
     values
-        A setting or its reading, which is zero at rest (time).
+        Setting or its reading, zero at rest (time).
 
     Returns
     -------
     numpy.ndarray or None
-        The median of the level that each belongs to, 0 where it is zero or unknown. None where
-        neighbouring levels are not apart: it is ramped, and no level is one.
+        Median of the level of each value, 0 if it is zero or unknown. None for a ramp, whose levels
+        are not separated.
 
     Examples
     --------
@@ -280,7 +279,7 @@ _SIGNALS = ("friction_force", "friction_coefficient", "shear_stress")
 
 
 def _stated(text: str | None, value: str | None, unit: str, attrs: Json) -> float | None:
-    """Return what a dialect says itself, or the value beside the table that it names."""
+    """Return an amount stated in the dialect, or the named value outside the table."""
     if text is not None:
         return to_si(text, unit, "speed")
     number = attrs.get(f"{value}_{unit}") if value else None

@@ -1,4 +1,4 @@
-"""The sliding velocity of a rig of which only the stroke and the frequency are known."""
+"""Sliding velocity of a rig with known stroke and frequency only."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 Drive = Literal["crank", "constant speed"]
-_TELLS = 0.3  # share of the friction's variance that has to be at the frequency
-_AT_REST = 0.3  # share of the usual swing below which a cycle does not slide
-_WHOLE = 0.85  # of it, from which a cycle beside a rest slides all along
-_OTHER = 0.1  # of the frequency, by which a drive may be slower or faster than it was set
-_AS_LOUD = 0.5  # of the usual variance: a cycle that is no rest
-_FEW = 0.05  # of the sliding cycles
+_TELLS = 0.3  # share of the friction's variance that must be at the frequency
+_AT_REST = 0.3  # share of the usual amplitude below which a cycle does not slide
+_WHOLE = 0.85  # share above which a cycle next to a rest slides completely
+_OTHER = 0.1  # relative tolerance of the drive's frequency
+_AS_LOUD = 0.5  # share of the usual variance above which a cycle is not at rest
+_FEW = 0.05  # share of the sliding cycles
 FEWEST_CYCLES = 3
-_DENSEST = 8  # samples that a cycle has at least
+_DENSEST = 8  # samples per cycle, at least
 
 
 class StrokeVelocity(NamedTuple):
-    """Sliding velocity [m/s] (time), and the frequency that the friction has [Hz].
+    """Sliding velocity [m/s] (time), and frequency of friction [Hz].
 
-    `unlike` is for how long [s] the friction turns over otherwise than it was stated; the velocity
-    is zero there.
+    `unlike` is the duration [s] with other reversals of friction than stated; there the velocity is
+    zero.
     """
 
     velocity: np.ndarray
@@ -32,7 +32,7 @@ class StrokeVelocity(NamedTuple):
 def velocity_of_strokes(
     time: np.ndarray, friction: np.ndarray, stroke: float, frequency: float, drive: Drive
 ) -> StrokeVelocity | None:
-    """Return the sliding velocity of a contact that goes to and fro at a known frequency.
+    """Return the sliding velocity of a reciprocating contact with a known frequency.
 
     Parameters
     ----------
@@ -41,27 +41,26 @@ def velocity_of_strokes(
     friction
         Friction force or coefficient with its sign (time).
     stroke
-        From end to end [m].
+        Length from end to end [m].
     frequency
-        Cycles per second as they were set [Hz].
+        Set frequency of cycles [Hz].
     drive
-        ``"crank"``: the velocity is a sine, with pi f L at its highest; ``"constant speed"``: it is
-        2 f L both ways.
+        ``"crank"``: sinusoidal velocity with amplitude pi f L; ``"constant speed"``: 2 f L in both
+        directions.
 
     Returns
     -------
     StrokeVelocity or None
-        None where the friction does not tell the phase: it has no sign, less than 30 % of its
-        variance is at the frequency, or there are fewer than 3 cycles of 8 samples; or where it
-        turns over with another frequency, more than a tenth off.
+        None if friction does not determine the phase: it has no sign, less than 30 % of its
+        variance is at the frequency, there are fewer than 3 cycles of 8 samples, or its frequency
+        deviates by more than a tenth.
 
     Notes
     -----
-    Friction points against the motion, so that its fundamental has the phase of the velocity. That
-    is taken cycle by cycle (the mean of the friction times exp(-2 pi i f t) over the cycle), so a
-    drive that is a little slower or faster than it was set is followed. A contact that shears
-    before it slides turns over late, and inertia early; both move the phase a little, and the speed
-    of the middle of a stroke in the second order only.
+    Friction opposes motion, so that its fundamental has the phase of the velocity. The phase is
+    computed cycle by cycle (mean of friction times exp(-2 pi i f t) over the cycle), and so follows
+    a drive that deviates from its setting. Shear before sliding delays the reversal, and inertia
+    advances it; both change the phase slightly, but the mid-stroke speed only in second order.
 
     Examples
     --------
@@ -72,7 +71,7 @@ def velocity_of_strokes(
     (1.01, 31.7)
     """
     cycle = np.floor((time - time[0]) * frequency).astype(int)
-    cycles = int(cycle[-1])  # whole ones
+    cycles = int(cycle[-1])  # complete cycles
     known = np.isfinite(friction) & (cycle < cycles)
     if cycles < FEWEST_CYCLES or np.count_nonzero(known) < _DENSEST * cycles:
         return None
@@ -87,7 +86,7 @@ def velocity_of_strokes(
     swing = np.abs(wave)
     usual = np.percentile(swing, 75)
     slides = (swing > _AT_REST * usual) & (counts > 0)
-    # a cycle in which it starts or stops goes but a part of the way
+    # a cycle with a start or stop covers only part of the stroke
     beside = ~(np.append(False, slides[:-1]) & np.append(slides[1:], False))
     slides &= ~beside | (swing > _WHOLE * usual)
     power = np.bincount(cycle[known], rest**2, minlength=cycles)[slides].sum()

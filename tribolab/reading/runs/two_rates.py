@@ -1,8 +1,8 @@
-"""Signals that were sampled at different rates and stand in one table, with blank cells between.
+"""Signals with different sampling rates in one table, with blank cells between values.
 
-Friction is taken as it was sampled; what was sampled more seldom is interpolated between its own
-values, and rows without a value of friction are left out where friction is the slower one. Blanks
-that come at no even distance are missing values and stay so.
+Friction keeps its samples; slower signals are interpolated between their values, and rows without
+friction are left out if friction is the slower one. Blanks at irregular distances are missing
+values and remain so.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from tribolab.arrays.medians import median
 from tribolab.core.untyped import Json
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 
-_MOST = 0.6  # share of rows with a value, of what was sampled more seldom
-_FEW = 8  # values that show a rate
-_EVEN = 2.0  # times the usual distance of values, the longest of nineteen in twenty
-_GAP = 3.0  # times the usual distance: a gap, which is not bridged
+_MOST = 0.6  # largest share of rows with a value of a slower signal
+_FEW = 8  # values needed to determine a rate
+_EVEN = 2.0  # most of the usual distance for 95 % of the distances
+_GAP = 3.0  # multiple of the usual distance above which a gap is not bridged
 
 
 class Together(NamedTuple):
-    """Time [s] and columns of the rows that are kept, and what was done, as attributes."""
+    """Time [s] and columns of the kept rows, and what was done, as attributes."""
 
     time: np.ndarray
     columns: dict[str, np.ndarray]
@@ -31,7 +31,7 @@ class Together(NamedTuple):
 
 
 def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Together:
-    """Bring signals of different rates to the rows of the friction signal.
+    """Interpolate signals of different rates to the rows of the friction signal.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
     Returns
     -------
     Together
-        The same time and columns where all signals have values in most rows. ``interpolated``
-        says of which signal only every so many rows has a value, and ``rows_without_friction``
-        how many rows have none.
+        Time and columns, unchanged if all signals have values in most rows. ``interpolated`` names
+        slower signals with their rate, and ``rows_without_friction`` is the number of rows without
+        friction.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
         keep[:] = False
         keep[seldom[lead]] = True
         attrs["rows_without_friction"] = int(time.size - seldom[lead].size)
-    for name, rows in seldom.items():  # of the first and last interval only one end is known
+    for name, rows in seldom.items():  # the first and last interval have one end only
         longest = int(np.diff(rows).max())
         if name != lead and rows[0] <= longest:
             keep[: rows[0]] = False
@@ -94,7 +94,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
 
 
 def _rows(values: np.ndarray) -> np.ndarray | None:
-    """Rows in which a signal has a value, if it has one every so many rows; else None."""
+    """Return the rows with a value, if a signal has one at regular distances; else None."""
     count = sum(int(np.isfinite(values[a:b]).sum()) for a, b in pieces(0, values.size))
     if not _FEW <= count <= _MOST * values.size:
         return None
@@ -106,7 +106,7 @@ def _rows(values: np.ndarray) -> np.ndarray | None:
 
 
 def _interpolated(time: np.ndarray, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Values between those that are there; none before the first, behind the last and in gaps."""
+    """Return interpolated values; NaN outside the range of known ones and in gaps."""
     known = time[rows]
     between = np.interp(time, known, values[rows], left=np.nan, right=np.nan)
     after = np.clip(np.searchsorted(known, time), 1, known.size - 1)

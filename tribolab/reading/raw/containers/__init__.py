@@ -1,1 +1,1 @@
-"""One file a container: what holds columns by name, read as tables of arrays."""
+"""Readers of file formats with named columns, one per module."""

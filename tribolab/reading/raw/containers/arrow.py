@@ -1,4 +1,4 @@
-"""Parquet and Feather: one table, whose metadata are settings."""
+"""Parquet and Feather: one table, with metadata as settings."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ def read_arrow(path: Path) -> RawFile:
     columns = []
     for place, name in enumerate(table.column_names):
         values = table.column(place)
-        if pa.types.is_dictionary(values.type):  # words, or numbers that are kept once
+        if pa.types.is_dictionary(values.type):  # categorical data
             values = values.cast(values.type.value_type)
         if pa.types.is_decimal(values.type):
             values = values.cast(pa.float64())
         with damage_told(path, f"{form} file"):
             numbers = values.to_numpy()
-        # what is no number (words, lists, structures) is of no use as a column
+        # other types (text, lists, structures) cannot be columns
         numbers = numbers if numbers.dtype.kind in "fiubMm" else np.empty(0, "U1")
         columns.append(RawColumn(name, _unit_of(table.schema.field(place)), numbers, path=name))
     said = dict(table.schema.metadata or {})
@@ -58,6 +58,6 @@ def read_arrow(path: Path) -> RawFile:
 
 
 def _unit_of(field: Any) -> str | None:
-    """Return the unit that a column's own metadata says."""
+    """Return the unit in a column's metadata."""
     said = {str(plain(k)).lower(): str(plain(v)) for k, v in (field.metadata or {}).items()}
     return next((said[key] for key in keys_of("unit") if said.get(key, "").strip()), None)

@@ -1,4 +1,4 @@
-"""Binary numbers behind a header of text that declares them."""
+"""Binary numbers after a text header that declares them."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _WRAPS_AT = re.compile(
 
 
 class _Channel(NamedTuple):
-    """A channel: name, unit, number = raw * scale + bias; counts of a turn, and where it wraps."""
+    """Channel: name, unit, number = raw * scale + bias; counts per turn and wrap of an encoder."""
 
     name: str
     unit: str
@@ -63,7 +63,7 @@ class _Channel(NamedTuple):
 
 
 class _Records(NamedTuple):
-    """Settings of the header, where the numbers begin, their type, how they lie."""
+    """Settings of the header, with offset, type and layout of the numbers."""
 
     said: list[Setting]
     offset: int
@@ -73,18 +73,18 @@ class _Records(NamedTuple):
 
 
 def declares_records(head: bytes) -> bool:
-    """Whether a file begins with text that says how the binary numbers behind it are to be read.
+    """Whether a file begins with a text header that declares the binary numbers after it.
 
     Parameters
     ----------
     head
-        Its first bytes.
+        First bytes of the file.
     """
     return _declared(head) is not None
 
 
 def read_declared_records(path: Path) -> RawFile:
-    """Read what a header declares: settings, names with units, numbers.
+    """Read the settings, channels and numbers declared by a header.
 
     Parameters
     ----------
@@ -94,12 +94,11 @@ def read_declared_records(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If its header declares no records.
+        If the header declares no records.
 
     Notes
     -----
-    A counter of parts of a turn that starts again is counted on, in turns: it moves less than half
-    of its range from row to row.
+    An encoder that wraps is unwrapped to turns, as it moves less than half of its range per row.
     """
     with path.open("rb") as file:
         told = _declared(file.read(_MAX_HEADER))
@@ -121,7 +120,7 @@ def _in_units(raw: np.ndarray, channel: _Channel) -> np.ndarray:
     values = np.asarray(raw, dtype=float)
     if channel.turn and channel.wrap:
         values = np.unwrap(values, period=channel.wrap)
-    with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may have any value
         values = values / channel.turn if channel.turn else values * channel.scale + channel.bias
     return np.where(np.isfinite(values), values, np.nan)
 
@@ -135,7 +134,7 @@ def _declared(head: bytes) -> _Records | None:
             settings.setdefault(said["key"].strip().lower(), said["value"])
     kind = _kind(settings)
     end = _END.search(text)
-    offset = _whole(_first(settings, _OFFSET)) or (_behind(text, end) if end else 0)
+    offset = _whole(_first(settings, _OFFSET)) or (_end_of_line(text, end) if end else 0)
     if kind is None or not offset or offset > len(head):
         return None
     above = text[: min(offset, end.start() if end else offset)]
@@ -147,8 +146,8 @@ def _declared(head: bytes) -> _Records | None:
     return _Records(_said(above), offset, kind, channels, not _APART.search(how))
 
 
-def _behind(text: str, mark: re.Match[str]) -> int:
-    """Return where the line of the mark ends: the numbers behind it may begin with a NUL."""
+def _end_of_line(text: str, mark: re.Match[str]) -> int:
+    """Return the end of the mark's line; the numbers after it may begin with a NUL byte."""
     end = text.find("\n", mark.start() + len(mark[0].rstrip()))
     return end + 1 if end >= 0 else 0
 
@@ -184,7 +183,7 @@ def _channels(settings: dict[str, str], text: str) -> list[_Channel]:
 
 
 def _channel(said: str, inside: str) -> _Channel:
-    """Return what is declared of a channel.
+    """Return the declaration of a channel.
 
     >>> _channel("FT unit=N scale=0.1 bias=2", "")[:4], _channel("FN, N", "")[:2]
     (('FT', 'N', 0.1, 2.0), ('FN', 'N'))
@@ -225,7 +224,7 @@ def _number(text: str, otherwise: float) -> float:
 
 
 def _said(text: str) -> list[Setting]:
-    """Return the lines of a header as settings, units of keys behind their numbers; no channels."""
+    """Return the lines of a header except channels as settings, with units after numbers."""
     found: list[Setting] = []
     for line in text.replace("\r", "").split("\n"):
         said = _SETTING.match(line)

@@ -1,4 +1,4 @@
-"""Columns and settings collected by the group that they belong to, as the tables of a file."""
+"""Collection of columns and settings by group, for the tables of a file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _NUMBERS = re.compile(r"\d+")
 
 
 class Groups:
-    """Columns and settings by the names of their groups, in the order of the file."""
+    """Columns and settings by group name, in the order of the file."""
 
     def __init__(self) -> None:
         self._columns: dict[str, list[RawColumn]] = {}
@@ -32,12 +32,12 @@ class Groups:
         Parameters
         ----------
         path, container
-            Of the file.
+            Path and format of the file.
         sort
-            Whether the file keeps no order: then a second table comes before a tenth.
+            Whether to sort the tables by name (2 before 10), because the file has no order.
         """
         order = _in_natural_order(list(self._columns)) if sort else list(self._columns)
-        # one column next to settings is one of them
+        # a single column next to settings is a setting
         apart = {name for name in order if name and len(self._columns[name]) > 1}
         tables = []
         for name in order:
@@ -48,7 +48,7 @@ class Groups:
 
 
 def _in_natural_order(names: Sequence[str]) -> list[str]:
-    """Sort names so that a second comes before a tenth.
+    """Sort names in natural order, with 2 before 10.
 
     >>> _in_natural_order(["step10", "step9", "step1"])
     ['step1', 'step9', 'step10']

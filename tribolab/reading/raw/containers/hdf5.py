@@ -1,7 +1,7 @@
-"""HDF5 and MATLAB 7.3: datasets are columns, attributes and single values say what holds for them.
+"""HDF5 and MATLAB 7.3: datasets are columns, attributes and single values are settings.
 
-A field of a structure array of MATLAB 7.3 is a dataset of references to what each element holds;
-its columns are called as in MATLAB: ``stage(2)/force``.
+A field of a MATLAB 7.3 structure array is a dataset of references to the values of its elements;
+its columns are named as in MATLAB: ``stage(2)/force``.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ _OF_LIBRARY = ("#refs#", "#subsystem#")
 _NAMES = ("columns", "column_names", "names", "labels", "channels", "fields")
 _UNITS = (*keys_of("unit"), "column_units", "Units", "Unit")
 _MEANINGS = ("long_name", "description", "standard_name", "label", "title")
-_MOST_ELEMENTS = 500  # of a structure array
+_MOST_ELEMENTS = 500  # elements of a structure array
 
 
 @isolated("h5py")
 def read_hdf5(path: Path) -> RawFile:
-    """Read the columns of an HDF5 file and what its attributes and single values say.
+    """Read the columns of an HDF5 file, with attributes and single values as settings.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def read_hdf5(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged, or takes data from outside.
+        If it is damaged, or refers to data outside.
     """
     # imported late: h5py loads slowly
     import h5py
@@ -58,7 +58,7 @@ def read_hdf5(path: Path) -> RawFile:
 
 
 class _Found:
-    """What was found of a file until now."""
+    """Columns and settings found so far in a file."""
 
     def __init__(self, h5py: Any) -> None:
         self._h5py = h5py
@@ -73,8 +73,8 @@ class _Found:
         units = _first(item, _UNITS)
         meaning = _first(item, _MEANINGS)
         labels = _labels_of_matrix(item)
-        if item.dtype.names:  # rows of several numbers, as tables are kept
-            own = _each_its_own(units, len(item.dtype.names))
+        if item.dtype.names:  # rows of several numbers, as in tables
+            own = _split_units(units, len(item.dtype.names))
             rows = item[()]
             for place, field in enumerate(item.dtype.names):
                 unit = own[place] or _of_field(item, place)
@@ -82,7 +82,7 @@ class _Found:
         elif labels:
             matrix = item[()]
             for place, label in enumerate(labels):
-                own = _each_its_own(units, len(labels))
+                own = _split_units(units, len(labels))
                 self._take(name, label, matrix[:, place], own[place])
         elif item.dtype.kind == "O" and self._h5py.check_dtype(ref=item.dtype):
             self._elements(name, item)
@@ -94,7 +94,7 @@ class _Found:
             self._take(group, label, item[()], unit, meaning if isinstance(meaning, str) else "")
 
     def tell(self, name: str, item: Any) -> None:
-        """Keep what attributes and single values say, by the group that they stand in."""
+        """Store attributes and single values as settings of their group."""
         is_data = isinstance(item, self._h5py.Dataset)
         group, own = name, name.rsplit("/", 1)[-1]
         if is_data and not item.dtype.names:
@@ -120,19 +120,19 @@ class _Found:
     ) -> None:
         single = values.dtype.kind not in "fiu" or values.size < 2
         if single or values.size != max(values.shape):
-            return  # not one column
+            return  # not a single column
         said = str(unit) if unit is not None else None
         path = f"{group}/{label}" if group else label
         self.groups.add_column(group, RawColumn(label, said, values.ravel(), meaning, path))
 
     def _elements(self, name: str, item: Any) -> None:
-        """Take a field of a structure array: each element's value lies elsewhere."""
+        """Read a field of a structure array, whose values are stored elsewhere."""
         group, _, field = name.rpartition("/")
         for number, reference in enumerate(item[()].ravel()[:_MOST_ELEMENTS], start=1):
             target = item.file[reference] if reference else None
             if not isinstance(target, self._h5py.Dataset):
                 continue
-            if what := foreign_storage(self._h5py, target.id):  # no link need lead to it
+            if what := foreign_storage(self._h5py, target.id):  # reachable without a link
                 raise refused(Path(item.file.filename), f"{name}({number})", what)
             element = f"{group}({number})" if group else f"({number})"
             if _is_char(target):
@@ -148,14 +148,14 @@ def _is_char(item: Any) -> bool:
 
 
 def _matlab_text(item: Any) -> str:
-    """Return text that is kept as the numbers of its letters."""
+    """Return text that is stored as character codes."""
     if item.attrs.get("MATLAB_empty", 0) or item.dtype.kind not in "u":
         return ""
     return "".join(chr(code) for code in np.asarray(item[()]).T.ravel()[:500].tolist())
 
 
 def _first(item: Any, keys: Sequence[str]) -> object:
-    """Return the first of some attributes that is there: a text, or a list of texts."""
+    """Return the first existing one of some attributes: a text, or a list of texts."""
     for key in keys:
         if key in item.attrs:
             said = plain(item.attrs[key])
@@ -166,8 +166,8 @@ def _first(item: Any, keys: Sequence[str]) -> object:
     return None
 
 
-def _each_its_own(units: object, width: int) -> list[str | None]:
-    """Return the units of a table's columns, of a list of them or of a text that lists them."""
+def _split_units(units: object, width: int) -> list[str | None]:
+    """Return the units of a table's columns, from a list or a text that lists them."""
     if isinstance(units, str):
         mark = next((mark for mark in (";", ",", "\t", "|") if mark in units), " ")
         units = [unit.strip() for unit in units.split(mark)]
@@ -182,7 +182,7 @@ def _of_field(item: Any, place: int) -> str | None:
 
 
 def _labels_of_matrix(item: Any) -> list[str]:
-    """Return the names of a matrix' columns, where its attributes say them."""
+    """Return the names of a matrix's columns from its attributes."""
     if len(item.shape) != 2 or item.dtype.names:
         return []
     for key in _NAMES:

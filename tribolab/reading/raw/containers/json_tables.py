@@ -1,4 +1,4 @@
-"""JSON that holds columns of numbers: settings, and a table for each of its parts."""
+"""JSON with columns of numbers: settings, and a table for each part."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.unit_endings import is_unit, without_unit
 
 _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
-_MIN_NUMBERS = 3  # numbers in a column
-_ROWS = 5  # of a table of records
-_DEEPEST = 12  # objects within one another that are looked into
+_MIN_NUMBERS = 3  # smallest length of a column
+_ROWS = 5  # records inspected
+_DEEPEST = 12  # deepest nesting searched
 _MOST_SETTINGS = 60
 _MAX_SETTING = 200  # characters of a setting
 _SET = re.compile(r"set[_ -]?(?:point)?s?|target|soll\w*|commanded|programmed", re.IGNORECASE)
@@ -37,12 +37,12 @@ class _Table(NamedTuple):
 
 
 def holds_tables(text: str) -> bool:
-    """Whether a text is JSON as a whole and holds at least two columns of numbers.
+    """Whether a text is JSON with at least two columns of numbers.
 
     Parameters
     ----------
     text
-        The whole file.
+        Text of the whole file.
     """
     return _JSON.match(text) is not None and bool(_tables(text)[0])
 
@@ -58,12 +58,12 @@ def read_json(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If it holds no columns of numbers.
+        If it has no columns of numbers.
 
     Notes
     -----
-    Columns are lists of as many numbers in one object, lists of records, rows below their names,
-    or objects with a name and values. Of several kinds of tables that with most numbers is taken.
+    Columns are lists of equal length in one object, lists of records, rows below their names, or
+    objects with a name and values. Of several kinds of tables, that with most numbers is used.
 
     Examples
     --------
@@ -107,20 +107,20 @@ def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
 
 
 def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int) -> list[Setting]:
-    """Collect tables; return the settings of a part that holds none further down."""
+    """Collect tables, and return the settings of parts without tables."""
     if depth > _DEEPEST:
         return []
     columns, units = _columns(part)
     if isinstance(part, dict):
         before = len(tables)
-        own = _simple(part, key)
+        own = _settings_of_object(part, key)
         if columns:
             tables.append(_Table(columns, units, own))
             return []
         for name, inner in part.items():
             if isinstance(inner, dict | list) and _setting(name, inner) is None:
                 own += _walk(inner, name, tables, depth + 1)
-        if len(tables) == before + 1 and depth:  # what is said beside a table belongs to it
+        if len(tables) == before + 1 and depth:  # settings next to a single table belong to it
             tables[-1] = tables[-1]._replace(said=[*own, *tables[-1].said])
             return []
         return own
@@ -130,13 +130,13 @@ def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int)
     said: list[Setting] = []
     for inner in part:
         plain = isinstance(inner, list) and not isinstance(next(iter(inner), 0), dict | list)
-        if isinstance(inner, dict | list) and not plain:  # a matrix has millions of plain rows
+        if isinstance(inner, dict | list) and not plain:  # a matrix has millions of rows
             said += _walk(inner, key, tables, depth + 1)
     return said
 
 
 def _columns(part: object) -> tuple[dict[str, list[float]], dict[str, str]]:
-    """Return the columns that a part is, and their units; none if it is no table."""
+    """Return the columns of a part and their units; empty if it is not a table."""
     if isinstance(part, dict):
         named = part.get("columns", part.get("fields", part.get("header")))
         rows = next((part[k] for k in ("data", "rows", "values") if k in part), None)
@@ -144,14 +144,14 @@ def _columns(part: object) -> tuple[dict[str, list[float]], dict[str, str]]:
             names = [_named(name) for name in named]
             if columns := _of_rows([name for name, _ in names], rows):
                 return columns, {name: unit for name, unit in names if unit}
-        lists = {k: _listed(v) for k, v in part.items()}
-        return _alike({k: v for k, v in lists.items() if v is not None}), {}
+        lists = {k: _numbers_of(v) for k, v in part.items()}
+        return _of_common_length({k: v for k, v in lists.items() if v is not None}), {}
     if not isinstance(part, list) or not part:
         return {}, {}
     if all(isinstance(one, dict) for one in part):
         channels = [(_named(one), _values_of(one)) for one in part]
         if len(part) > 1 and all(name and values for (name, _), values in channels):
-            columns = _alike({name: values or [] for (name, _), values in channels})
+            columns = _of_common_length({name: values or [] for (name, _), values in channels})
             return columns, {name: unit for (name, unit), _ in channels if unit}
         return _of_records(part), {}
     if isinstance(part[0], list) and all(isinstance(name, str) for name in part[0]):
@@ -160,7 +160,7 @@ def _columns(part: object) -> tuple[dict[str, list[float]], dict[str, str]]:
 
 
 def _named(one: object) -> tuple[str, str]:
-    """Return the name and the unit of a channel."""
+    """Return name and unit of a channel."""
     if isinstance(one, str):
         return one, ""
     if not isinstance(one, dict):
@@ -171,12 +171,12 @@ def _named(one: object) -> tuple[str, str]:
 
 
 def _values_of(one: Json) -> list[float] | None:
-    lists = [values for value in one.values() if (values := _listed(value)) is not None]
+    lists = [values for value in one.values() if (values := _numbers_of(value)) is not None]
     return lists[0] if len(lists) == 1 else None
 
 
-def _listed(values: object) -> list[float] | None:
-    """Return a list of numbers, or the numbers of an object that counts them; None of others."""
+def _numbers_of(values: object) -> list[float] | None:
+    """Return a list of numbers, also from an object with counted keys; else None."""
     if isinstance(values, dict) and len(values) >= _MIN_NUMBERS and all(map(str.isdigit, values)):
         values = list(values.values())
     if not isinstance(values, list) or len(values) < _MIN_NUMBERS:
@@ -190,8 +190,8 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _alike(lists: dict[str, list[float]]) -> dict[str, list[float]]:
-    """Return those of the commonest length, if there are at least two."""
+def _of_common_length(lists: dict[str, list[float]]) -> dict[str, list[float]]:
+    """Return the columns of the most common length, if there are at least two."""
     lengths = Counter(map(len, lists.values()))
     length, often = lengths.most_common(1)[0] if lengths else (0, 0)
     return {k: v for k, v in lists.items() if len(v) == length} if often > 1 else {}
@@ -202,7 +202,7 @@ def _of_records(records: list[Json]) -> dict[str, list[float]]:
     if len(records) < _ROWS or len(names) < 2:
         return {}
     columns = {name: [record.get(name) for record in records] for name in names}
-    return {k: listed for k, v in columns.items() if (listed := _listed(v)) is not None}
+    return {k: listed for k, v in columns.items() if (listed := _numbers_of(v)) is not None}
 
 
 def _of_rows(names: list[str], rows: list[object]) -> dict[str, list[float]]:
@@ -211,11 +211,11 @@ def _of_rows(names: list[str], rows: list[object]) -> dict[str, list[float]]:
     if not all(isinstance(row, list) and len(row) == len(names) for row in rows):
         return {}
     columns = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
-    return {k: listed for k, v in columns.items() if (listed := _listed(v)) is not None}
+    return {k: listed for k, v in columns.items() if (listed := _numbers_of(v)) is not None}
 
 
-def _simple(part: Json, key: str) -> list[Setting]:
-    """Return what an object says of itself, a setting for each value: "radius: 15 mm"."""
+def _settings_of_object(part: Json, key: str) -> list[Setting]:
+    """Return the single values of an object as settings, e.g. "radius: 15 mm"."""
     before = f"{_clean(key)} " if _SET.fullmatch(key) else ""
     found = (said for name, value in part.items() if (said := _setting(name, value)))
     few = islice(found, _MOST_SETTINGS)
@@ -237,7 +237,7 @@ def _setting(name: str, value: object) -> Setting | None:
 
 
 def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tuple[str, str]]:
-    """Yield units that an object gives to names of columns."""
+    """Yield the units that an object assigns to column names."""
     if depth > _DEEPEST or not isinstance(part, dict):
         return
     own = {k: v for k, v in part.items() if k in names and isinstance(v, str)}
@@ -249,7 +249,7 @@ def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tupl
 
 
 def _with_units(said: list[Setting], units: dict[str, str]) -> list[Setting]:
-    """Add the units of columns to settings of the same name, and leave out units themselves."""
+    """Add units to settings of the same name, and remove settings that are units."""
     found = []
     for setting in said:
         unit = units.get(setting.key.split(" ")[-1], "")

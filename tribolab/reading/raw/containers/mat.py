@@ -1,4 +1,4 @@
-"""MAT files of version 5 to 7, read by SciPy: a variable is a column, a structure a table."""
+"""MAT files of version 5 to 7, read by SciPy: variables are columns, structures are tables."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from tribolab.reading.raw.containers.settings import settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile
 from tribolab.reading.raw.opening import damage_told, isolated, largest_unpacked
 
-_DEEPEST = 8  # structures within structures
-_MOST_ELEMENTS = 500  # of an array of structures
-_MAX_TEXT = 2000  # letters of a text
-_MOST_CELLS = 200  # texts of cells
-_HEADER, _COMPRESSED = 128, 15  # bytes before the variables, and the type of a packed one
-_STATED = 64  # packed bytes that hold the type and length of what is packed
+_DEEPEST = 8  # deepest nesting of structures
+_MOST_ELEMENTS = 500  # elements of a structure array
+_MAX_TEXT = 2000  # characters of a text
+_MOST_CELLS = 200  # texts in cells
+_HEADER, _COMPRESSED = 128, 15  # bytes before the variables, and type code of a compressed one
+_STATED = 64  # compressed bytes that contain type and length
 
 
 class Variable(NamedTuple):
-    """One variable: its name, and its numbers (None: text, cells, a complex array).
+    """Variable with its name and numbers (None for text, cells and complex arrays).
 
-    A field of a structure is called as in MATLAB: ``data.force``, of an array of structures
-    ``data(2).force``. `texts` are its text, or those of its cells.
+    A field of a structure is named as in MATLAB: ``data.force``, of an array of structures
+    ``data(2).force``. `texts` are its text, or the texts of its cells.
     """
 
     name: str
@@ -44,17 +44,17 @@ def read_variables(path: Path) -> list[Variable]:
     Parameters
     ----------
     path
-        A file that begins with ``MATLAB 5.0``, as versions 5, 6 and 7 do.
+        File that begins with ``MATLAB 5.0`` (versions 5 to 7).
 
     Returns
     -------
     list of Variable
-        In the file's order.
+        Variables in the order of the file.
 
     Raises
     ------
     ReadError
-        If the file is damaged or cut short.
+        If the file is damaged or incomplete.
     """
     # imported late: SciPy loads slowly
     from scipy.io import loadmat
@@ -63,7 +63,7 @@ def read_variables(path: Path) -> list[Variable]:
     with damage_told(path, "MAT file"), warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         content = loadmat(path, appendmat=False, mat_dtype=True)
-        # asked for MATLAB's own types, SciPy drops the imaginary parts
+        # with MATLAB's own types, SciPy would drop imaginary parts
         if any(issubclass(warning.category, np.exceptions.ComplexWarning) for warning in warned):
             content = loadmat(path, appendmat=False)
         found = [
@@ -78,7 +78,7 @@ def read_variables(path: Path) -> list[Variable]:
 
 
 def _refuse_bomb(path: Path) -> None:
-    """Refuse a file whose compressed variables state more bytes than it can unpack to."""
+    """Raise if compressed variables state more bytes than they can unpack to."""
     with path.open("rb") as file:
         place, unpacked, size = _HEADER, 0, file.seek(0, 2)
         file.seek(_HEADER - 2)
@@ -88,7 +88,7 @@ def _refuse_bomb(path: Path) -> None:
             head = file.read(8 + _STATED)
             kind, length = (int.from_bytes(head[at : at + 4], order) for at in (0, 4))
             if kind == _COMPRESSED:
-                with contextlib.suppress(zlib.error):  # damaged: SciPy says so
+                with contextlib.suppress(zlib.error):  # SciPy reports the damage
                     inner = zlib.decompressobj().decompress(head[8:], 8)
                     unpacked += int.from_bytes(inner[4:], order)
             place += 8 + length
@@ -128,7 +128,7 @@ def _variables(name: str, value: Any, depth: int) -> list[Variable]:
 
 
 def read_mat(path: Path) -> RawFile:
-    """Read the variables of a MAT file as columns, those of a structure as a table.
+    """Read the variables of a MAT file as columns, and structures as tables.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def read_mat(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If the file is damaged or cut short.
+        If the file is damaged or incomplete.
     """
     groups = Groups()
     for variable in read_variables(path):
@@ -157,7 +157,7 @@ _OF_UNITS = keys_of("unit")
 
 
 def variable_names(path: Path) -> set[str]:
-    """Names of the variables in a MAT file.
+    """Return the names of the variables in a MAT file.
 
     Raises
     ------

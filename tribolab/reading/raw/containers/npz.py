@@ -1,7 +1,7 @@
-"""NumPy archives: arrays by name are columns; single values, texts and JSON say what holds for all.
+"""NumPy archives: named arrays are columns; single values, texts and JSON are settings.
 
-An array of two columns whose first rises is a signal with its own times; where all such times are
-the same they are one column, ``time``.
+An array of two columns, the first of which increases, is a signal with its own times; if these are
+the same for all signals, they form one column, ``time``.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def read_npz(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged, unpacks to far more than its size, or holds objects of Python.
+        If it is damaged, unpacks to far more than its size, or contains Python objects.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:
@@ -90,7 +90,7 @@ def _columns_of(arrays: dict[str, np.ndarray]) -> tuple[_Columns, list[Setting]]
 
 
 def _on_one_clock(pairs: list[tuple[str, np.ndarray]]) -> _Columns:
-    """Return signals with times of their own at those of the longest, of slower ones between."""
+    """Return signals with own times interpolated to the times of the longest one."""
     if not pairs:
         return []
     clock = max((table[:, 0] for _, table in pairs), key=len)

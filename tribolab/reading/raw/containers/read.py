@@ -1,4 +1,4 @@
-"""Which reader opens which container."""
+"""Selection of the reader for a container format."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tribolab.core.errors import ReadError
 from tribolab.reading.raw import limits
 from tribolab.reading.raw.model import RawFile
 
-# module and function of each: what they import takes long to load
+# module and function of each reader; their imports are slow
 _READERS = {
     "hdf5": ("hdf5", "read_hdf5"),
     "netcdf": ("hdf5", "read_hdf5"),  # both begin alike
@@ -37,7 +37,7 @@ def read_container(path: Path, form: str) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged or has too many columns; other libraries have errors of their own.
+        If it is damaged or has too many columns; libraries may raise other errors.
     ImportError
         If the library for it is not installed.
     """

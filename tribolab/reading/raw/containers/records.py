@@ -1,4 +1,4 @@
-"""Binary records of one kind, one after the other, as a dialect describes them."""
+"""Consecutive binary records of one type, as described by a dialect."""
 
 from __future__ import annotations
 

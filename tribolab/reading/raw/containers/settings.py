@@ -1,4 +1,4 @@
-"""Settings of containers: attributes, properties, metadata and single numbers, typed."""
+"""Settings of containers: attributes, properties, metadata and single numbers."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ import numpy as np
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import Place, Setting
 
-_SHORT = 200  # characters of a setting
-_DEEPEST = 6  # objects within objects
+_SHORT = 200  # most characters of a setting
+_DEEPEST = 6  # deepest nesting of objects
 _PER = re.compile(  # fric_N_per_V, v_set_um_per_s
     r"(?P<key>\w+?)_+(?P<unit>[^\W\d_]{1,6})_per_(?P<other>[^\W\d_]{1,6}\d?)"
 )
 
 
 def plain(value: object) -> object:
-    """Return a value of a file's library as one of Python: a number, a text or a list."""
+    """Return a library's value as a Python number, text or list."""
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
     if isinstance(value, np.ndarray | np.generic):
@@ -29,16 +29,16 @@ def plain(value: object) -> object:
 
 
 def settings_of(key: str, value: object, path: str = "", depth: int = 0) -> list[Setting]:
-    r"""Return what an attribute says; of an object, or its JSON, each value that it holds.
+    r"""Return an attribute as settings; for an object, or its JSON, one for each value.
 
     Parameters
     ----------
     key, value
-        Of the attribute.
+        Name and value of the attribute.
     path
-        Of the group or dataset that it belongs to.
+        Path of its group or dataset.
     depth
-        How many objects lie around it.
+        Nesting depth.
 
     Examples
     --------
@@ -76,7 +76,7 @@ def _of_object(key: str, value: Mapping[str, object], path: str, depth: int) -> 
         text = f"{rest.pop(numbers[0])} {units}"[:_SHORT]
         return [Setting(f"{key}{name}", text, Place(path))]
     found = []
-    if isinstance(units, Mapping):  # units of its other values, by name
+    if isinstance(units, Mapping):  # units of other values, by name
         own = {n: u for n, u in units.items() if n in rest and isinstance(u, str)}
         rest |= {n: f"{rest[n]} {u}" for n, u in own.items()}
         left = {f"{n}_unit": u for n, u in units.items() if n not in own}
@@ -89,7 +89,7 @@ def _of_object(key: str, value: Mapping[str, object], path: str, depth: int) -> 
 
 
 def _with_unit(key: str) -> str:
-    """Return a key whose last words are a unit per another with that in brackets."""
+    """Return a key that ends with a unit ratio with the unit in brackets."""
     key = " ".join(key.split())
     per = _PER.fullmatch(key)
     return f"{per['key']} [{per['unit']}/{per['other']}]" if per else key

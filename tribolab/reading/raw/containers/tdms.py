@@ -1,4 +1,4 @@
-"""LabVIEW TDMS: groups of channels, which may have clocks of their own (waveforms)."""
+"""LabVIEW TDMS: groups of channels, which may have separate clocks (waveforms)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _UNITS = ("unit_string", "NI_UnitDescription", "Unit", *keys_of("unit"))
 
 
 def channel_names(path: Path) -> set[str]:
-    """Names of the channels of a TDMS file as ``group/channel``.
+    """Return the names of the channels of a TDMS file as ``group/channel``.
 
     Raises
     ------
@@ -31,11 +31,11 @@ def channel_names(path: Path) -> set[str]:
 
 @isolated("nptdms")
 def read_tdms(path: Path, *, values: bool = True) -> RawFile:
-    """Read a TDMS file, or the names and properties of its channels alone.
+    """Read a TDMS file, or only the names and properties of its channels.
 
-    An index file next to it is not used. A waveform has the clock that its properties
-    ``wf_start_time``, ``wf_start_offset`` and ``wf_increment`` state; its times count from the
-    first start of the file.
+    An index file next to it is not used. The clock of a waveform is stated by its properties
+    ``wf_start_time``, ``wf_start_offset`` and ``wf_increment``; times count from the first start in
+    the file.
 
     Raises
     ------

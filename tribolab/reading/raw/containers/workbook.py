@@ -1,4 +1,4 @@
-"""Workbooks: the sheets, the columns of one of them, and what stands beside its table."""
+"""Workbooks: sheets, columns of one sheet, and settings next to its table."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from tribolab.reading.raw.containers.xml_workbook import XmlWorkbook, is_xml_wor
 from tribolab.reading.raw.model import Place, RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.opening import damage_told, isolated
 
-_MOST_CELLS = 50_000_000  # of a sheet
-_MOST_ROWS, _MOST_WIDE = 100, 12  # of settings that stand in cells
-_HEAD = 4096  # bytes that tell a workbook in XML
-_SUMMARY = 30  # rows of it, below a table
+_MOST_CELLS = 50_000_000  # most cells of a sheet
+_MOST_ROWS, _MOST_WIDE = 100, 12  # size of a block of settings in cells
+_HEAD = 4096  # bytes sufficient to recognise a workbook in XML
+_SUMMARY = 30  # most rows of a summary below a table
 _SHORT = 200  # characters of a setting
-_ABOVE = 40  # rows of a sheet above its names
+_ABOVE = 40  # rows of a sheet searched for names
 _UNIT_BEHIND = re.compile(r"\s*[\[(][^\[\]()]*[\])]$")
 Cells = Sequence[Sequence[object]]
 
 
 @isolated("python_calamine")
 def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
-    """Return the cells of every sheet by its name, in the order of the workbook.
+    """Return the cells of every sheet by name, in the order of the workbook.
 
     Parameters
     ----------
     path
         The workbook.
     rows
-        How many rows of each sheet; by default all.
+        Number of rows of each sheet; by default all.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
 
 @isolated("python_calamine")
 def _sheet_and_settings(path: Path, sheet: str | None) -> tuple[str, Cells, list[Cells]]:
-    """Return a sheet's name and cells, and the cells of small other sheets."""
+    """Return a sheet's name and cells, and the cells of other small sheets."""
     with damage_told(path, "workbook"):
         book = _book(path)
         sheet = sheet or book.sheet_names[0]
@@ -92,16 +92,16 @@ def read_sheet(
     path
         The workbook.
     sheet
-        Name of the sheet; else the first.
+        Name of the sheet; by default the first.
     line, skip
-        The row of names, from 1, and how many rows below it are passed over.
+        Row of names, from 1, and number of rows below it to skip.
     units_below
-        Whether units stand in the row below the names.
+        Whether units are in the row below the names.
 
     Raises
     ------
     ReadError
-        If there is no such sheet, or it ends before the table.
+        If the sheet does not exist, or ends before the table.
     """
     sheet, rows, few = _sheet_and_settings(path, sheet)
     table = _table_below(path, sheet, rows, line, skip, units_below=units_below)
@@ -112,16 +112,16 @@ def read_sheet(
 def read_sheets(
     path: Path, wanted: Sequence[str], line: int, *, units_below: bool = False
 ) -> RawFile:
-    """Read the sheets of a workbook that hold the same table; others hold settings of all.
+    """Read the sheets of a workbook with the same table; other sheets are common settings.
 
     Parameters
     ----------
     path
         The workbook.
     wanted
-        Names of columns, without units: a sheet that has none of them is no table.
+        Names of columns without units; a sheet without any of them is not a table.
     line, units_below
-        As for `read_sheet`; if the names are in another row of a sheet, they are found there.
+        As for `read_sheet`; names in another row of a sheet are also found.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def _row_of_names(rows: Cells, wanted: set[str], line: int) -> int | None:
 def _table_below(
     path: Path, sheet: str, rows: Cells, line: int, skip: int = 0, *, units_below: bool = False
 ) -> RawTable:
-    """Return the table below a row of names, with the settings above that."""
+    """Return the table below a row of names, with the settings above it."""
     if len(rows) <= line:
         raise ReadError(f"sheet '{shown(sheet)}' ends before row {line + 1}", where=path)
     names = [str(cell) for cell in rows[line - 1]]
@@ -169,7 +169,7 @@ def _table_below(
         units = [str(cell).strip("[]() ") or None for cell in rows[line]]
         units += [None] * (len(names) - len(units))
         first += 1
-    body = _without_summary(rows[first:])
+    body = _rows_above_summary(rows[first:])
     columns = []
     for place, (name, unit) in enumerate(zip(names, units, strict=False)):
         cells = [row[place] if place < len(row) else "" for row in body]
@@ -180,8 +180,8 @@ def _table_below(
     return RawTable(sheet, tuple(columns), tuple(_settings_above(rows[: line - 1][:_MOST_ROWS])))
 
 
-def _without_summary(body: Cells) -> Cells:
-    """Return the rows above an empty one below which words stand: "Mean", and its number."""
+def _rows_above_summary(body: Cells) -> Cells:
+    """Return the rows above a summary that follows an empty row, e.g. "Mean" and its value."""
     for place in range(max(len(body) - _SUMMARY, 0), len(body)):
         if any(cell not in ("", None) for cell in body[place]):
             continue
@@ -197,13 +197,13 @@ def _check_size(path: Path, sheet: str, page: object) -> None:
 
 
 def is_small(page: object) -> bool:
-    """Whether a sheet (of calamine) may hold settings rather than a table."""
+    """Whether a sheet (of calamine) is so small that it may contain settings."""
     height, width = (getattr(page, f"total_{side}") for side in ("height", "width"))
     return bool(height <= _MOST_ROWS and width <= _MOST_WIDE)
 
 
 def _settings_above(rows: Cells) -> list[Setting]:
-    """Return rows of cells that hold words as settings."""
+    """Return rows of cells that contain words as settings."""
     settings = []
     for line, row in enumerate(rows, start=1):
         cells = [" ".join(str(cell).split()) for cell in row[:_MOST_WIDE] if cell not in ("", None)]
@@ -214,7 +214,7 @@ def _settings_above(rows: Cells) -> list[Setting]:
 
 
 def of_cells(cells: Sequence[object]) -> np.ndarray:
-    """Return the numbers of a sheet's column, its moments or times of day, or a word in it.
+    """Return a sheet column as numbers, moments or times of day; if not possible, an invalid cell.
 
     >>> of_cells(["0,5", "", 2]).tolist(), of_cells([1.0, "error"]).tolist()
     ([0.5, nan, 2.0], ['error'])

@@ -1,4 +1,4 @@
-"""Workbooks that Excel 2003 and instruments write as XML, with the interface of calamine."""
+"""Workbooks in XML, as written by Excel 2003 and instruments, with calamine's interface."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from tribolab.core.errors import ReadError
 
 _MARK = b"urn:schemas-microsoft-com:office:spreadsheet"
 _END = b"Workbook>"
-_HEAD = 4096  # bytes at either end that name it
-_MOST_CELLS = 5_000_000  # all are held at once
+_HEAD = 4096  # bytes at either end sufficient to recognise it
+_MOST_CELLS = 5_000_000  # all cells are in memory at once
 _BLOCK = 1 << 20
 Cell = str | float
 
 
 def is_xml_workbook(head: bytes) -> bool:
-    """Whether a file begins as a workbook in XML does."""
+    """Whether a file begins like a workbook in XML."""
     return _MARK in head[:_HEAD] and b"<" in head[:64]
 
 
 def refuse_cut_short(path: Path) -> None:
-    """Refuse a workbook in XML that lacks its end, before all of it is read.
+    """Raise if a workbook in XML is incomplete, before reading all of it.
 
     Raises
     ------
     ReadError
-        If its last bytes close no workbook.
+        If its last bytes do not close a workbook.
     """
     with path.open("rb") as file:
         file.seek(max(path.stat().st_size - _HEAD, 0))
@@ -37,7 +37,7 @@ def refuse_cut_short(path: Path) -> None:
 
 
 class XmlSheet:
-    """The cells of one sheet."""
+    """Cells of one sheet."""
 
     def __init__(self, rows: list[list[Cell]]) -> None:
         self._rows = rows
@@ -50,12 +50,12 @@ class XmlSheet:
 
 
 class XmlWorkbook:
-    """The sheets of a workbook in XML.
+    """Sheets of a workbook in XML.
 
     Raises
     ------
     ReadError
-        If it is no well-formed XML, declares entities, or is larger than a table of numbers.
+        If it is not well-formed XML, declares entities, or is larger than a table of numbers.
     """
 
     def __init__(self, path: Path) -> None:
@@ -71,7 +71,7 @@ class XmlWorkbook:
         parser.StartElementHandler = self._begin
         parser.EndElementHandler = self._end
         parser.CharacterDataHandler = self._said
-        parser.EntityDeclHandler = self._refuse  # nothing is expanded
+        parser.EntityDeclHandler = self._refuse  # entities are not expanded
         try:
             with path.open("rb") as file:
                 while block := file.read(_BLOCK):
@@ -82,7 +82,7 @@ class XmlWorkbook:
 
     @property
     def sheet_names(self) -> list[str]:
-        """Names of the sheets, in their order."""
+        """Names of the sheets in order."""
         return list(self._sheets)
 
     def get_sheet_by_name(self, name: str) -> XmlSheet:
@@ -110,7 +110,7 @@ class XmlWorkbook:
             self._is_number, self._text = said.get("Type") == "Number", []
 
     def _fill(self, cells: list[Any], index: str | None, empty: object) -> None:
-        """Put what is empty before a row or cell that says its number, from 1."""
+        """Add the empty cells or rows before one with an explicit number, from 1."""
         if index is not None and re.fullmatch(r"\d{1,7}", index):
             self._cells += max(int(index) - 1 - len(cells), 0)
             if self._cells > _MOST_CELLS:
