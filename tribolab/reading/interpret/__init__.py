@@ -1,1 +1,1 @@
-"""From columns and settings to what they mean: evidence, rules of physics, one decision."""
+"""Interpretation of columns and settings: evidence, rules of physics, decision."""

@@ -1,4 +1,4 @@
-"""Amounts: numbers with a unit that a file states of itself, and queries for them."""
+"""Amounts stated by a file, i.e. numbers with a unit, and queries for them."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from tribolab.units.spellings import WEIGHTS
 
 
 class Amount(NamedTuple):
-    """A number that a file states of itself, in a line of text, an attribute or its name.
+    """Number stated by a file in a line of text, an attribute or the file name.
 
     Attributes
     ----------
     name
-        Under which a dialect keeps it.
+        Name in a dialect.
     pattern
-        Finds the number in `text`, the line or the name.
+        Pattern of the number in `text`, the line or the name.
     unit, to
-        Its unit, and the SI unit of its dimension, if it has one that is known.
+        Its unit, and the SI unit of its dimension, if known.
     source
         ``preamble``, ``step`` or ``file name``.
     own_unit
-        The unit as the file writes it: a weight's, too.
+        The unit as in the file, also of a weight.
     scale
-        By which the number is multiplied: 0.5 if it is a diameter and wanted is a radius.
+        Factor of the number, e.g. 0.5 for a diameter if a radius is needed.
     key
-        What the file calls it, normalised.
+        Normalised name in the file.
     guess
-        What of it is a guess.
+        Part of it that is a guess.
     """
 
     name: str
@@ -49,20 +49,20 @@ class Amount(NamedTuple):
 
     @property
     def number(self) -> float:
-        """The number as the file has it; NaN if it is none."""
+        """Number as in the file; NaN if it is invalid."""
         match = re.search(self.pattern, self.text)
         return decimal(match[1]) if match else float("nan")
 
     def means(self, *concepts: str) -> bool:
-        """Whether what the file calls it means one of some concepts of settings.toml."""
+        """Whether its name in the file matches one of some concepts of settings.toml."""
         return any(key_pattern(concept).search(self.key) for concept in concepts)
 
     def is_in(self, si_unit: str) -> bool:
-        """Whether its unit converts to an SI unit; that of a weight, to newtons."""
+        """Whether its unit converts to an SI unit; a weight converts to newtons."""
         return converts(self._unit(si_unit), si_unit)
 
     def si(self, si_unit: str) -> float:
-        """Return its size in an SI unit; NaN if it has another dimension."""
+        """Return its value in an SI unit; NaN if it has another dimension."""
         if not self.is_in(si_unit):
             return float("nan")
         return self.scale * self.number * conversion(self._unit(si_unit), si_unit)[0]
@@ -73,7 +73,7 @@ class Amount(NamedTuple):
 
 
 class Amounts(tuple[Amount, ...]):
-    """What a file states, to be asked for by concept and unit."""
+    """Amounts stated by a file, with queries by concept and unit."""
 
     __slots__ = ()
 
@@ -85,13 +85,13 @@ class Amounts(tuple[Amount, ...]):
         Parameters
         ----------
         concepts
-            Names in settings.toml; every amount if there are none.
+            Names in settings.toml; every amount without any.
         unit
-            SI unit that theirs converts to; "" if they must have none.
+            SI unit to which theirs converts; "" for amounts without unit.
         but
-            Concepts that they must not mean.
+            Concepts to exclude.
         source
-            Where they stand; "" for anywhere.
+            Required source; "" for any.
         """
         return Amounts(
             one
@@ -105,6 +105,6 @@ class Amounts(tuple[Amount, ...]):
     def only(
         self, *concepts: str, unit: str | None = None, but: Sequence[str] = (), source: str = ""
     ) -> Amount | None:
-        """Return the one amount of some concepts; None if there is none, or several."""
+        """Return the only amount of some concepts; None if there are none or several."""
         found = self.of(*concepts, unit=unit, but=but, source=source)
         return found[0] if len(found) == 1 else None

@@ -1,7 +1,7 @@
-"""What follows by rules of physics from what is known, and what is missing for it.
+"""Derivation of quantities from known ones by rules of physics, and missing inputs.
 
-What is known are columns, amounts that the text states, and what a person said. The rules are
-those of physics.toml; a member that nothing fills is what has to be asked for.
+Known are columns, amounts stated in text, and a person's answers. The rules are those of
+physics.toml; a member of a rule that cannot be filled must be asked for.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _Source = TypeVar("_Source")
 
 
 class Given(NamedTuple, Generic[_Source]):
-    """Something known: its name in a formula, where it is from, its number [SI] if it is one."""
+    """Known quantity: symbol in a formula, source, and number [SI] if it is one."""
 
     quantity: str
     symbol: str
@@ -28,7 +28,7 @@ class Given(NamedTuple, Generic[_Source]):
 
 
 class Derivation(NamedTuple, Generic[_Source]):
-    """A proof tree: a quantity is known, or follows by a rule from others."""
+    """Proof tree of a quantity: known, or derived by a rule from others."""
 
     quantity: str
     given: Given[_Source] | None = None
@@ -37,7 +37,7 @@ class Derivation(NamedTuple, Generic[_Source]):
 
     @property
     def formula(self) -> str:
-        """The formula of what is known, as a dialect writes it."""
+        """Formula of the known quantities, in a dialect's notation."""
         if self.given is not None or self.rule is None:
             return self.given.symbol if self.given is not None else ""
         parts = {need.quantity: need.formula for need in self.needs}
@@ -51,14 +51,14 @@ class Derivation(NamedTuple, Generic[_Source]):
 
     @property
     def leaves(self) -> tuple[Given[_Source], ...]:
-        """What it is known from, each once."""
+        """Known quantities on which it depends, each once."""
         if self.given is not None:
             return (self.given,)
         return tuple(dict.fromkeys(leaf for need in self.needs for leaf in need.leaves))
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether a rule that it uses may not hold for these numbers."""
+        """Whether a rule that it uses may be invalid for these numbers."""
         return any(need.is_doubtful for need in self.needs) or (
             self.rule is not None and _in_doubt(self.rule, self.needs)
         )
@@ -74,18 +74,18 @@ def derive(
     *,
     without: frozenset[str] = frozenset(),
 ) -> Derivation[_Source] | None:
-    """Return how a quantity is known, or follows; None if it does not.
+    """Return the derivation of a quantity; None if it is not possible.
 
     Parameters
     ----------
     goal
         A quantity of physics.toml.
     known
-        What is known, by quantity.
+        Known inputs by quantity.
     facts
-        What is known of the rig besides: "crank" of a drive that moves to and fro.
+        Facts on the rig, e.g. "crank" of a reciprocating drive.
     without
-        Quantities that are sought already.
+        Quantities whose derivation is already in progress.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def missing_members(
     *,
     without: frozenset[str] = frozenset(),
 ) -> tuple[str, ...]:
-    """Return what has to be asked for, that a quantity follows; empty if it does.
+    """Return the inputs that are missing to derive a quantity; empty if none are.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def missing_members(
     Returns
     -------
     tuple of str
-        Members of a rule of which all others are known; else the quantity itself.
+        Missing members of a rule whose other members are known; else the quantity itself.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def missing_members(
 
 
 def rules_for(goal: str, facts: Collection[str]) -> Iterator[tuple[Rule, tuple[str, ...]]]:
-    """Yield the rules that give a quantity, and what they need; a rate needs what it changes."""
+    """Yield the rules that give a quantity, and their inputs; a rate requires what it changes."""
     for rule in rules():
         if rule.use == "proof" or (rule.condition and rule.condition not in facts):
             continue

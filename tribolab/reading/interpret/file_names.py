@@ -1,4 +1,4 @@
-"""What the name of a file states: PTFE_3N_b.csv."""
+"""Amounts stated in a file name: PTFE_3N_b.csv."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _FORCE = re.compile(r"(?:^|_)\d+(?:\.\d+)?(?P<unit>N|mN)(?=_|$)")
 
 
 def amounts_of_name(name: str) -> list[Amount]:
-    r"""Return what the name of a file states: the load.
+    r"""Return the amounts in a file name: the load.
 
     Parameters
     ----------
     name
-        Of the file, with its ending.
+        File name with its suffix.
 
     Examples
     --------

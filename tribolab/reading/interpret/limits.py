@@ -1,4 +1,4 @@
-"""What decides whether columns of a file prove each other."""
+"""Limits for proofs of columns by other columns."""
 
 from __future__ import annotations
 

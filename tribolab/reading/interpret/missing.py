@@ -1,4 +1,4 @@
-"""What a run lacks for a friction coefficient over the sliding speed, and how to state it."""
+"""Inputs missing for friction over sliding speed, and how to state them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 from tribolab.reading.interpret.derive import Given, Known, missing_members
 
 Goal = Literal["friction", "load", "speed"]
-_GOALS: dict[Goal, tuple[str, ...]] = {  # the first may follow by rules
+_GOALS: dict[Goal, tuple[str, ...]] = {  # only the first may be derived by rules
     "friction": ("friction_force", "friction_coefficient", "shear_stress"),
     "load": ("normal_force", "normal_stress", "friction_coefficient"),
     "speed": ("sliding_velocity", "position", "set_speed"),
@@ -36,14 +36,14 @@ _SHUTTLES = (
 
 
 class MissingInput(NamedTuple):
-    """A quantity that has to be asked for, what it is for, and the facts of the rig."""
+    """Missing quantity, its purpose, and facts on the rig."""
 
     member: str
     goals: tuple[Goal, ...]
     facts: frozenset[str] = frozenset()
 
     def __str__(self) -> str:
-        """Say what is missing, and how it is stated."""
+        """Return what is missing, and how to state it."""
         if self.member == "track_radius":
             formula = f": {_FORMULA}" if "friction" in self.goals else ""
             if self.goals == ("friction",):
@@ -63,15 +63,15 @@ class MissingInput(NamedTuple):
 def missing_inputs(
     known: Known[object] | Collection[str], facts: Collection[str] = ()
 ) -> list[MissingInput]:
-    """Return what is missing of friction, load and sliding speed, and not derived from others.
+    """Return the missing inputs of friction, load and sliding speed that cannot be derived.
 
     Parameters
     ----------
     known
-        What is known, by quantity of physics.toml, or only the names of that.
+        Known inputs by quantity of physics.toml, or only their names.
     facts
-        What is known of the rig: "crank" where what turns drives strokes, "reversals" where the
-        friction turns over as that of strokes does.
+        Facts on the rig: "crank" if a rotation drives strokes, "reversals" if the friction reverses
+        as in strokes.
 
     Examples
     --------

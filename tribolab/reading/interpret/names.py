@@ -1,4 +1,4 @@
-"""Which quantities the name of a column may stand for."""
+"""Quantities for which the name of a column may stand."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from tribolab.reading.lexicon.lexicon import (
 from tribolab.units.quantities import quantity
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 
-_VAGUE = 0.6  # of the score of a word that names this quantity alone
+_VAGUE = 0.6  # share of the score of an unambiguous word
 _OF_DEVICE = 0.98
-_TERM = 0.98  # a whole term of a language
-_LATE = 0.2  # what a symbol loses at most that stands behind others
-KNOWN_WORD = 0.7  # a name of which so much is a known word is no guess
+_TERM = 0.98  # score of a whole term of a language
+_LATE = 0.2  # largest reduction for a symbol that is late in the list
+KNOWN_WORD = 0.7  # share of known words above which a name is certain
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
 _STAGE = re.compile(
@@ -41,19 +41,19 @@ _OF_STAGE = re.compile(
 _ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)
 _INSTEAD = {"position": "height_displacement"}
 _ANGLES = ("deg", "rad", "°")
-_MAX_NAME = 1000  # characters of a name that are looked at: searches take their square
+_MAX_NAME = 1000  # characters of a name, as searches take quadratic time
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
-# what a unit means for a quantity in this SI unit: weights for forces
+# special meaning of a unit for a quantity: weights for forces
 _MEANT = {"N": WEIGHTS}
 _OF_HEIGHTS = {"m": {"A": "angstrom"}}
 COUNTS = "counts"
-# columns of time that are called by their unit, as the clocks of microcontrollers are
+# columns of time that are named by their unit, e.g. of microcontroller clocks
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
 _CLOCKS |= {"usecs": "us", "mus": "us", "sec": "s", "secs": "s"}
 _RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
 _GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "tempC", "forceN"
-_NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
-# a speed that was set is not how fast it slid
+_NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # row numbers, not rotation
+# a set speed is not the actual speed
 _AS_SET = {"sliding_velocity": "set_speed", "normal_force": "set_normal_force"}
 
 
@@ -63,15 +63,15 @@ _SYMBOLS = frozenset(
 
 
 class Match(NamedTuple):
-    """A quantity that a name may stand for; the higher the score, the surer."""
+    """Quantity for which a name may stand; a higher score is more certain."""
 
     quantity: str
     score: float
-    unit: str | None  # if it has to be read otherwise than it is written: g as gf
+    unit: str | None  # if it differs from the written one: g as gf
 
 
 def device_of(name: str) -> tuple[str, str]:
-    """Separate the device that some programs put before a point from a channel's own name.
+    """Split the name of a channel into a device, which some programs prepend, and its own name.
 
     >>> device_of("DAQ.Fz"), device_of("Coeff. of friction"), device_of("Fz")
     (('DAQ', 'Fz'), ('', 'Coeff. of friction'), ('', 'Fz'))
@@ -86,7 +86,7 @@ def device_of(name: str) -> tuple[str, str]:
 
 
 def is_axis(name: str) -> bool:
-    """Whether a name says that it is a place of a machine's axis: 'Stage.X', 'X axis position'.
+    """Whether a name is that of a machine axis position: 'Stage.X', 'X axis position'.
 
     >>> is_axis("XYStage.X"), is_axis("Position")
     (True, False)
@@ -99,7 +99,7 @@ _ABOUT_UNIT = re.compile(r"(?<=\w)\s{0,3}\([^()]{1,30}\)\s*$")  # "uin (microinc
 
 
 def length_unit(text: str) -> str:
-    """Return the unit of length that a text is and nothing else, in letters of ours; or "".
+    """Return a text that is only a unit of length in standard notation; else "".
 
     >>> length_unit("[nm]"), length_unit("Mikrometer"), length_unit("nm per step")
     ('nm', 'um', '')
@@ -121,7 +121,7 @@ _PER = re.compile(r"[\s_]+per[\s_]+|(?<=[mN°])_(?=(?:s|min|h)$)")  # mm_per_s, 
 
 @functools.lru_cache(maxsize=4096)
 def split_unit(label: str) -> tuple[str, str | None]:
-    """Separate a unit at the end of a name that has no brackets: 'Lateral um', 'Force/N'.
+    """Split a name without brackets and the unit at its end: 'Lateral um', 'Force/N'.
 
     >>> split_unit("Lateral um"), split_unit("F_x"), split_unit("Force/N")
     (('Lateral', 'um'), ('F_x', None), ('Force', 'N'))
@@ -152,7 +152,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         unit = _PER.sub("/", unit)
         unit = unit_in_words(unit)
         for text in (unit, unit.lower() if len(unit) > 3 else unit):
-            # what has no dimension is part of the name: the N/N of F_N/N
+            # a dimensionless ending is part of the name: the N/N of F_N/N
             unitless = converts(text, "1") and text != "%"
             if name and ((not unitless and is_unit(text)) or text in _ANGLES):
                 return name, text
@@ -167,9 +167,9 @@ def split_unit(label: str) -> tuple[str, str | None]:
 
 
 def _symbol_and_unit(label: str) -> tuple[str, str] | None:
-    """Separate the unit from a symbol with which it happens to make another: Ff_N is no F/Fn.
+    """Split a unit from a symbol, even if both resemble another symbol: Ff_N is not F/Fn.
 
-    Behind a stroke stands the unit, as the standards on quantities write it (ISO 80000-1).
+    A unit may follow a slash, as in ISO 80000-1.
 
     >>> _symbol_and_unit("Ff_N"), _symbol_and_unit("F_N"), _symbol_and_unit("t_s")
     (('Ff', 'N'), None, ('t', 's'))
@@ -191,7 +191,7 @@ def _symbol_and_unit(label: str) -> tuple[str, str] | None:
 
 
 def is_count(unit: str) -> bool:
-    """Whether a unit is that of a converter's counts, which says nothing of what one is worth.
+    """Whether a unit means counts of a converter, without a calibration factor.
 
     >>> is_count("Counts"), is_count("N")
     (True, False)
@@ -200,7 +200,7 @@ def is_count(unit: str) -> bool:
 
 
 def is_stroke_length(name: str) -> bool:
-    """Whether a name is that of a stroke's length.
+    """Whether a name means the length of a stroke.
 
     >>> is_stroke_length("Stroke"), is_stroke_length("Set stroke length")
     (True, True)
@@ -212,18 +212,18 @@ def is_stroke_length(name: str) -> bool:
 
 
 def is_stroke_frequency(name: str, unit: str | None) -> bool:
-    """Whether a name and a unit are those of how often strokes come.
+    """Whether name and unit mean the frequency of strokes.
 
     >>> is_stroke_frequency("Frequency", "Hz"), is_stroke_frequency("Speed", "mm/s")
     (True, False)
     """
     plain = normalise_label(without_role(name))
-    # the name first: what a rare unit measures is found out with a library that loads slowly
+    # name first, as the conversion of a rare unit loads a slow library
     return bool(unit and key_pattern("frequency").search(plain) and converts(unit, "Hz"))
 
 
 def is_date(name: str) -> bool:
-    """Whether a name is that of dates, or of dates with times of day, and nothing else.
+    """Whether a name means dates only, with or without times of day.
 
     >>> is_date("Date and time"), is_date("Datum der Messung")
     (True, False)
@@ -232,7 +232,7 @@ def is_date(name: str) -> bool:
 
 
 def is_track_radius(name: str) -> bool:
-    """Whether a column's name, normalised, is that of the radius of a track.
+    """Whether a normalised column name means the radius of a track.
 
     >>> is_track_radius("trackradius"), is_track_radius("radiomediodelapista")
     (True, True)
@@ -244,17 +244,17 @@ def is_track_radius(name: str) -> bool:
 
 
 def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
-    """Return the quantities that a column may hold, the likeliest first.
+    """Return the possible quantities of a column, the most likely first.
 
     Parameters
     ----------
     name
         Name of the column without its unit.
     unit
-        Its unit; None if it has none. A quantity of another dimension is left out; counts of a
-        converter may be any but a pure number.
+        Its unit; None without one. Quantities of other dimensions are left out; counts may be any
+        quantity except a pure number.
     scan
-        Whether the file holds a profile and not a run.
+        Whether the file contains a profile instead of a run.
 
     Examples
     --------
@@ -268,7 +268,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
         return []
     options = []
     counted = unit is not None and is_count(unit)
-    alone = unit is not None and not scan and not counted and _kinds(unit) == 1
+    alone = unit is not None and not scan and not counted and _count_quantities(unit) == 1
     turns = unit is not None and not scan and converts(unit, "Hz")
     role = "" if scan else role_of(name)
     plain = normalise_label(without_role(name)) if role in ("set", "measured") else ""
@@ -279,14 +279,14 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
         read_as = (_OF_HEIGHTS if scan else _MEANT).get(known.unit, {}).get(unit or "")
         fits = unit is None or converts(read_as or unit, known.unit, known.bare)
         if score and (known.unit != "1" if counted else fits):
-            # what only this quantity is measured in tells it, whatever else the name says
+            # a unit of only one quantity identifies it, whatever the name
             told = alone or (turns and word.quantity == "rotation_speed")
             score = KNOWN_WORD + (1 - KNOWN_WORD) * score if told else score
             held = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
             options.append(Match(held, score, read_as))
     if not scan and role != "set" and is_turns(unit or ""):
         options.append(Match("rotation_speed", KNOWN_WORD, None))
-    if not scan and _ACROSS.search(name):  # "Z position" lies across the motion
+    if not scan and _ACROSS.search(name):  # "Z position" is perpendicular to the motion
         options = [m._replace(quantity=_INSTEAD.get(m.quantity, m.quantity)) for m in options]
     best: dict[str, Match] = {}
     for match in sorted(options, key=lambda match: -match.score):
@@ -306,8 +306,8 @@ def _is_ratio(name: str) -> bool:
 
 
 @functools.lru_cache(maxsize=256)
-def _kinds(unit: str) -> int:
-    """Return the number of quantities of a run that are measured in a unit."""
+def _count_quantities(unit: str) -> int:
+    """Return the number of run quantities that can have a unit."""
     known = [quantity(word.quantity) for word in known_words("run")]
     return sum(converts(unit, kind.unit, kind.bare) for kind in known)
 
@@ -318,9 +318,9 @@ def _score(text: str, word: Word) -> float:
         return max(term, 1.0 - min(0.01 * word.symbols.index(text), _LATE))
     if term:
         return term
-    return max(_share(text, word.stems), _VAGUE * _share(text, word.vague))
+    return max(_covered_share(text, word.stems), _VAGUE * _covered_share(text, word.vague))
 
 
-def _share(text: str, stems: tuple[str, ...]) -> float:
-    """Part of a name that the longest stem in it makes up."""
+def _covered_share(text: str, stems: tuple[str, ...]) -> float:
+    """Return the share of a name covered by its longest known stem."""
     return max((len(stem) for stem in stems if stem in text), default=0) / len(text)

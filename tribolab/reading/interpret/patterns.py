@@ -1,4 +1,4 @@
-"""Patterns that people can read, for what stands in a line of text."""
+"""Readable patterns for text lines."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 
 
 def escaped(text: str) -> str:
-    """Return text as a pattern that people can read: blanks stay blanks."""
+    """Return text as a readable pattern: blanks remain blanks."""
     return _SPECIAL.sub(r"\\\1", text).replace("\t", r"\t")
 
 
 def number_pattern(before: str) -> str:
-    """Return a pattern for the number behind a line's beginning, in which numbers may be others.
+    """Return a pattern for the number after a line's beginning, in which numbers may vary.
 
     >>> re.search(number_pattern("# cell 2: "), "# cell 3: 4.5 N")[1]
     '4.5'

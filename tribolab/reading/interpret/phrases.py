@@ -20,9 +20,9 @@ from tribolab.reading.lexicon.lexicon import (
 from tribolab.reading.numbers import NUMBER, Number, decimal, numbers_in
 from tribolab.units.spellings import WEIGHTS
 
-LONGEST_LINE = 300  # characters of a line that are looked at
-_MOST_OF_LINE = 8  # numbers of a line
-_CAPITALS = 3  # letters of a unit that may be written large
+LONGEST_LINE = 300  # characters of a line that are inspected
+_MOST_OF_LINE = 8  # most numbers of a line
+_CAPITALS = 3  # letters of a unit that may be in capitals
 _ENDS = " \t:=~≈＝：-–"
 _CLAUSES = re.compile(
     rf"{CLAUSE_END}|\b(?:(?<!load )(?<!force )(?<!weight )on|{alternatives('clause')})\b"
@@ -38,7 +38,7 @@ _SINGLE = re.compile(
 
 
 class Ratio(NamedTuple):
-    """Two numbers with a colon or a stroke between them, and where they stand in the line."""
+    """Two numbers separated by a colon or slash, with their position in the line."""
 
     one: float
     other: float
@@ -48,7 +48,7 @@ class Ratio(NamedTuple):
 
 
 class Phrase(NamedTuple):
-    """A number with a unit inside a line; `key` are the words before it, in its own clause."""
+    """Number with a unit in a line; `key` are the words before it in its clause."""
 
     key: str
     number: str
@@ -58,7 +58,7 @@ class Phrase(NamedTuple):
 
 
 def phrases(line: str) -> list[Phrase]:
-    """Return the numbers with a unit that stand inside a line of text, in its order.
+    """Return the numbers with units in a line of text, in order.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def phrases(line: str) -> list[Phrase]:
 
 
 def _unit_of(number: Number) -> str:
-    """Return the unit of a number, small where it is written large: 30 LBF; "" without one."""
+    """Return the unit of a number, in lower case if written in capitals: 30 LBF; "" without one."""
     for unit in (number.unit, number.unit.partition("/")[0]):
         unit = unit if len(unit) < _CAPITALS or is_unit(unit) else unit.lower()
         if unit and is_unit(unit):
@@ -106,7 +106,7 @@ def _unit_of(number: Number) -> str:
 
 
 def label_of(line: str) -> str:
-    """Return what stands before the first colon or cell of a line, normalised; "" if nothing does.
+    """Return the normalised text before the first colon or cell of a line; "" without any.
 
     >>> label_of("Shaft: steel, Ø 80 mm"), label_of('"Anneau";"acier 4620"'), label_of("Ø 80 mm")
     ('shaft', 'anneau', '')
@@ -116,7 +116,7 @@ def label_of(line: str) -> str:
 
 
 def weight_on_lever(line: str) -> float:
-    """Return how many times a weight presses that one line states together with its lever; or 0.
+    """Return the lever ratio that a line states together with a weight; 0 without one.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def ratios_in(line: str) -> list[Ratio]:
 
 
 def single_number(line: str) -> tuple[str, float, str] | None:
-    """Return the words, the number and the word behind it of a line that holds one number.
+    """Return words, number and following word of a line with a single number; else None.
 
     >>> single_number("Gain x 2,5 (set)"), single_number("Averaging: 8 samples")
     (('Gain', 2.5, ''), ('Averaging', 8.0, 'samples'))

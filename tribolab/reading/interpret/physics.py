@@ -1,7 +1,7 @@
-"""Columns that prove each other: rules of physics tell what they hold, and in which units.
+"""Identification of columns by rules of physics that their numbers obey.
 
-A rule whose members may all be columns of a file is tested on the rows; where the ratio that it
-makes is constant, and some units make it one, the file has proven what those columns are.
+A rule whose members may all be columns of a file is tested on the rows. If the ratio of its two
+sides is constant, and some units make it 1, the meaning of these columns is proved.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from tribolab.reading.interpret.unit_texts import converts
 from tribolab.units.quantities import QUANTITIES
 from tribolab.units.spellings import WEIGHTS
 
-_MOST_MEMBERS = 500  # ways in which columns may be members of one rule
+_MOST_MEMBERS = 500  # most combinations of columns for one rule
 Units = dict[int, str]
 
 
 class Candidate(NamedTuple):
-    """A column: what it may hold by its name, and its unit, None where the file says none."""
+    """Column with its possible quantities, and its unit, None if not stated."""
 
     quantities: frozenset[str]
     unit: str | None
 
 
 class Proof(NamedTuple):
-    """What a column holds, in which unit, and the rules that its numbers obey."""
+    """Quantity and unit of a column, and the rules that its numbers obey."""
 
     quantity: str
     unit: str
@@ -47,7 +47,7 @@ class Proof(NamedTuple):
 
 class _Fit(NamedTuple):
     rule: Rule
-    places: tuple[int, ...]  # of what it gives, and needs
+    places: tuple[int, ...]  # of the result and the inputs
     spread: float
     units: list[tuple[str, ...]]
 
@@ -57,7 +57,7 @@ class _Fit(NamedTuple):
 
 
 def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Proof]:
-    """Return what columns hold and in which units, as far as their own numbers prove it.
+    """Return the quantities and units of columns, as far as their numbers prove them.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Pro
     Returns
     -------
     dict
-        By place from 0; a column whose unit is not the only possible one is left out.
+        Proofs by place from 0; columns with an ambiguous unit are left out.
     """
     roles: dict[int, str] = {}
     fits: list[_Fit] = []
@@ -91,12 +91,12 @@ def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Pro
 
 
 def known_quantities() -> frozenset[str]:
-    """Return what rules may prove."""
+    """Return the quantities that rules may prove."""
     return frozenset(name for rule in rules() if rule.proves for name in rule.members)
 
 
 def _members(rule: Rule, candidates: Sequence[Candidate]) -> Iterator[tuple[int, ...]]:
-    """Yield the columns that may be the members of a rule, each of them once."""
+    """Yield the combinations of distinct columns that may be the members of a rule."""
     options = [
         [place for place, candidate in enumerate(candidates) if name in candidate.quantities]
         for name in rule.members
@@ -112,17 +112,17 @@ def _fit(
     candidates: Sequence[Candidate],
     numbers: np.ndarray,
 ) -> _Fit | None:
-    """Return in which units columns obey a rule; None if they do in none."""
+    """Return the units in which columns obey a rule; None without any."""
     left = numbers[:, places[0]]
     right = _product(rule, numbers[:, places[1 : 1 + len(rule.needs)]])
     if rule.rate:
-        # what is summed must grow as its rate says, over tenths of the record
+        # an integral must follow its rate over each tenth of the record
         edges = np.linspace(0, len(left) - 1, min(11, len(left))).astype(int)
         steps = 0.5 * (right[1:] + right[:-1]) * np.diff(numbers[:, places[-1]])
         sums = np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))])
         left, right = np.diff(left[edges]), np.diff(sums[edges])
     told = np.isfinite(left) & np.isfinite(right) & (right != 0)
-    told &= np.abs(left) > 0.05 * np.nanmax(np.abs(left), initial=0.0)  # digits are few near zero
+    told &= np.abs(left) > 0.05 * np.nanmax(np.abs(left), initial=0.0)  # few digits near zero
     if told.sum() < (5 if rule.rate else ROWS.value):
         return None
     low, ratio, high = np.quantile(left[told] / right[told], [0.1, 0.5, 0.9])
@@ -138,7 +138,7 @@ def _fit(
 
 
 def _expected(rule: Rule, units: tuple[str, ...]) -> float:
-    """Return the ratio that a rule makes of numbers in some units."""
+    """Return the ratio of the two sides of a rule for numbers in given units."""
     factor, powers = rule.powers()
     scales = [to_si(n, u) for n, u in zip(rule.members, units, strict=True)]
     right = (s ** powers.get(n, 1) for n, s in zip(rule.members[1:], scales[1:], strict=True))
@@ -157,7 +157,7 @@ def _units(
     candidates: Sequence[Candidate],
     numbers: np.ndarray,
 ) -> Iterator[list[str]]:
-    """Yield the units in which each member of a rule is of a plausible size."""
+    """Yield the units in which each member of a rule has a plausible size."""
     for name, place in zip(rule.members, places, strict=True):
         own = candidates[place].unit
         options = units_written()[name] if own is None else _read_as(name, own)
@@ -168,7 +168,7 @@ def _units(
 
 
 def _read_as(name: str, unit: str) -> list[str]:
-    """Return the unit in which a column is a member of a rule: a force in g is one in gf."""
+    """Return the unit of a column as a member of a rule: a force in g is in gf."""
     si = si_unit(name)
     read = WEIGHTS.get(unit, unit) if si == "N" else unit
     bare = QUANTITIES[name].bare if name in QUANTITIES else None
@@ -176,7 +176,7 @@ def _read_as(name: str, unit: str) -> list[str]:
 
 
 def _only_units(fits: Sequence[_Fit]) -> Units:
-    """Return the units of columns that all rules together leave no choice of."""
+    """Return the units of columns that all rules together determine uniquely."""
     options = [list(fit.units) for fit in fits]
     domains: dict[int, set[str]] = {}
     changed = True

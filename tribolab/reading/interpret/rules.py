@@ -1,4 +1,4 @@
-"""The rules of physics.toml, and the SI units in which they hold."""
+"""Rules of physics.toml, and their SI units."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _WORD = re.compile(
 
 
 class Rule(NamedTuple):
-    """``gives = formula``, in SI units; with `rate`, the formula is the change of it in time."""
+    """Rule ``gives = formula`` in SI units; with `rate`, the formula is its rate of change."""
 
     gives: str
     formula: str
     rate: bool = False
     use: Literal["both", "proof", "derivation"] = "both"
-    condition: str = ""  # a fact about the rig
+    condition: str = ""  # fact about the rig
     asks: tuple[str, ...] = ()
     doubt: str = ""
     speed: str = ""
@@ -37,12 +37,12 @@ class Rule(NamedTuple):
 
     @property
     def members(self) -> tuple[str, ...]:
-        """Quantities that it joins."""
+        """Quantities that it relates."""
         return (self.gives, *self.needs, *(("time",) if self.rate else ()))
 
     @property
     def proves(self) -> bool:
-        """Whether columns can be tested by it: products of what is found in columns."""
+        """Whether columns can be tested by it: a product of recordable quantities."""
         known = units_written()
         return (
             self.use != "derivation"
@@ -63,14 +63,14 @@ class Rule(NamedTuple):
         return factor, powers
 
     def __str__(self) -> str:
-        """As it is said: "sliding velocity = rotation speed x track radius"."""
+        """Return the rule in words, e.g. "sliding velocity = rotation speed x track radius"."""
         text = self.formula.replace("_", " ").replace("*", "x")
         return f"{self.gives.replace('_', ' ')} = {text}{' x time' if self.rate else ''}"
 
 
 @functools.cache
 def rules() -> tuple[Rule, ...]:
-    """Return the rules of physics.toml, in its order."""
+    """Return the rules of physics.toml, in order."""
     return tuple(map(_rule, _toml()["rule"]))
 
 
@@ -88,12 +88,12 @@ def _rule(block: Mapping[str, Any]) -> Rule:
 
 
 def units_written() -> Mapping[str, list[str]]:
-    """Return the units that instruments write for members of rules, by what is measured."""
+    """Return the units that instruments use for members of rules, by quantity."""
     return _toml()["unit"]
 
 
 def plausible_sizes() -> Mapping[str, tuple[float, float]]:
-    """Return the smallest and the largest size [SI] in a friction test, by what is measured."""
+    """Return the smallest and largest plausible value [SI] in a friction test, by quantity."""
     return _toml()["size"]
 
 
@@ -107,7 +107,7 @@ def si_unit(name: str) -> str:
 
 @functools.cache
 def to_si(name: str, unit: str) -> float:
-    """Return the factor from a unit to the SI unit in which the rules hold."""
+    """Return the factor from a unit to the SI unit of the rules."""
     if name in QUANTITIES:
         return unit_conversion(unit, name)[0]
     return conversion(unit, si_unit(name))[0]

@@ -1,4 +1,4 @@
-"""Settings: each line of text parsed once, into amounts with a unit and texts with a key."""
+"""Settings in text: each line is parsed once, into amounts with a unit and texts with a key."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from tribolab.reading.lexicon.lexicon import (
 from tribolab.reading.numbers import NUMBER
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 
-_LONGEST_ENTRY = 1000  # of a line with a key: searches take their square
+_LONGEST_ENTRY = 1000  # characters of a line with a key, as searches take quadratic time
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"; of testXpert
 # "Test speed";"mm/min";"100"
 _SAYS, _IN_CELLS = (  # the latter: "Dead weight,500,g"
@@ -71,7 +71,7 @@ _EITHER_WAY = re.compile(r"^\s*(?:\+/?-|±)")
 _STEP_TITLE = re.compile(rf"\W*{alternatives('step')}\W*\d", re.IGNORECASE)
 _STEP = re.compile(rf"{alternatives('step')}\d*n?")
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
-# what a sentence may state in a unit of such a dimension
+# settings that a sentence may state in a unit of each dimension
 _WANTED = {
     "m": (
         *("track_radius", "track_diameter", "diameter", "outer_size", "turning", "tip_radius"),
@@ -90,14 +90,14 @@ _WANTED = {
 
 @functools.lru_cache(maxsize=64)
 def amounts_of(lines: tuple[str, ...], most: int) -> Amounts:
-    """Return the amounts that lines of text state, each under a name of its own.
+    """Return the amounts stated in lines of text, each with a unique name.
 
     Parameters
     ----------
     lines
-        Above or below a table, or the attributes of a container as ``key: value``.
+        Lines above or below a table, or attributes of a container as ``key: value``.
     most
-        So many at most.
+        Largest number of amounts.
 
     Examples
     --------
@@ -108,35 +108,35 @@ def amounts_of(lines: tuple[str, ...], most: int) -> Amounts:
     19.6133
     """
     found: dict[str, Amount] = {}
-    units = _units_apart(lines)
+    units = _separate_units(lines)
     for line in lines:
         if len(found) >= most:
             break
         line = line[:_LONGEST_ENTRY]
         entry = _entry(line.rstrip())
-        # a digit before the colon: a time of day, if it is not the number of a step
+        # a digit before the colon means a time of day, unless it is a step number
         if entry and (not entry["key"][-1].isdigit() or _STEP_TITLE.match(entry["key"])):
-            _keep(found, _of_entry(entry, units))
+            _add_unique(found, _of_entry(entry, units))
             continue
         if pairs := _PAIR.findall(line):
             for pair in filter(None, map(_entry, pairs)):
                 one = _of_entry(pair, units)
                 start = one.pattern.removeprefix(r"^\s*")
-                _keep(found, one._replace(pattern=start, text=line.strip()))
+                _add_unique(found, one._replace(pattern=start, text=line.strip()))
             continue
         strokes = False
         for phrase in phrases(line):
             if strokes and not phrase.key:  # "stroke 5 mm at 2 Hz"
                 phrase = phrase._replace(key="frequency")
             if amount := _of_phrase(phrase):
-                _keep(found, amount)
+                _add_unique(found, amount)
             strokes = key_pattern("stroke").search(phrase.key) is not None
     return Amounts(found.values())
 
 
 @functools.lru_cache(maxsize=64)
 def texts_of(lines: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
-    """Return what lines of text say in words, by key; of what drives strokes, under ``drive``.
+    """Return text settings by key; the drive of strokes under ``drive``.
 
     >>> texts_of(("Drive: crank", "Units um", "an eccentric drive"))
     (('Drive', 'crank'), ('Units', 'um'), ('drive', 'crank'), ('drive', 'eccentric drive'))
@@ -146,14 +146,14 @@ def texts_of(lines: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     found = [(match["key"], match["text"].rstrip('"; ,')) for match in entries if match]
     alone = (_UNIT_ALONE.match(line.strip()) for line in lines)
     found += [(match["key"], match["unit"]) for match in alone if match and _is_of_unit(match)]
-    drives = (_as_written("drive", line[:LONGEST_LINE]) for line in lines)
+    drives = (_matching_words("drive", line[:LONGEST_LINE]) for line in lines)
     return (*found, *(("drive", text) for text in drives if text))
 
 
-def _as_written(name: str, line: str) -> str:
-    """Return the words of a line that sentences.toml has under a name; "" if it has none of them.
+def _matching_words(name: str, line: str) -> str:
+    """Return the words of a line that match an entry of sentences.toml; "" without any.
 
-    >>> _as_written("drive", "Tribómetro biela-manivela")
+    >>> _matching_words("drive", "Tribómetro biela-manivela")
     'biela-manivela'
     """
     match = text_pattern(name).search(plain_text(line))
@@ -173,12 +173,12 @@ def _is_of_unit(alone: re.Match[str]) -> bool:
 
 def _entry(line: str) -> re.Match[str] | None:
     entry = _SAYS.match(line) or _IN_CELLS.match(line) or _TURNS_FIRST.match(line)
-    # "Scan length 1.5 mm, 3000 points": a sentence; "Load (steps 1 a 4);40 N": none
+    # "Scan length 1.5 mm, 3000 points" is a sentence; "Load (steps 1 a 4);40 N" is not
     return None if entry and phrases(_BRACKETS.sub("", entry["key"])) else entry
 
 
-def _units_apart(lines: tuple[str, ...]) -> dict[str, str]:
-    """Return units that stand in lines of their own, by whose they are: "Stroke unit: mm"."""
+def _separate_units(lines: tuple[str, ...]) -> dict[str, str]:
+    """Return units stated in separate lines, by quantity: "Stroke unit: mm"."""
     unit = part_pattern("unit").pattern
     of = part_pattern("of").pattern
     apart = re.compile(rf"^(?P<key>.+?){unit}$|^{unit}(?:for|{of})?(?P<behind>.+)$")
@@ -187,11 +187,11 @@ def _units_apart(lines: tuple[str, ...]) -> dict[str, str]:
 
 
 def _of_entry(entry: re.Match[str], units: Mapping[str, str]) -> Amount:
-    """Return the amount of a line that says nothing else."""
+    """Return the amount of a line that contains nothing else."""
     key, unit = _key_and_unit(entry, units)
     digits = r"[-+\d.eE]+" if entry.re is _IN_CELLS else r"[-+\d.,eE]+"
     before = escaped(entry["before"].strip())
-    if _STEP_TITLE.match(key):  # the next step has another number
+    if _STEP_TITLE.match(key):  # the number differs in the next step
         before = re.sub(r"\d+", r"\\d+", before)
     behind = entry.string[entry.end("before") :][:4]
     signs = r"(?:\+/?-|±)?\s*" if _EITHER_WAY.search(behind) else ""
@@ -211,7 +211,7 @@ def _of_entry(entry: re.Match[str], units: Mapping[str, str]) -> Amount:
             _BRACKETS.sub("", without_role(key) if role_of(key) == "set" else key)
         )
         made = made._replace(key=bare) if made._replace(key=bare).means("load") else made
-        other = quantity == "set_normal_force" and not made.means("load")  # a preload is none
+        other = quantity == "set_normal_force" and not made.means("load")  # not a preload
         if quantity.startswith("set_") and not other:
             return made._replace(name=quantity, unit=options[0].unit or unit, to=None)
     return made
@@ -233,7 +233,7 @@ def _key_and_unit(entry: re.Match[str], units: Mapping[str, str]) -> tuple[str, 
 
 
 def _of_phrase(phrase: Phrase) -> Amount | None:
-    """Return what a sentence states, if it is one of the things that a run or profile needs."""
+    """Return the amount of a sentence, if it is relevant for a run or profile."""
     dimension = _dimension(phrase.unit)
     weight = phrase.unit in WEIGHTS
     wanted = _WANTED.get("N" if weight else dimension or "", ())
@@ -259,7 +259,7 @@ def _of_phrase(phrase: Phrase) -> Amount | None:
 
 
 def _is_one_force(phrase: Phrase) -> bool:
-    """Whether the only force or weight of a line is the first number in it: no range of several."""
+    """Whether a line contains a single force or weight as its first number."""
     forces = [
         said for said in phrases(phrase.line) if converts(said.unit, "N") or said.unit in WEIGHTS
     ]
@@ -271,8 +271,8 @@ def _dimension(unit: str | None) -> str | None:
     return next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
 
 
-def _keep(found: dict[str, Amount], amount: Amount) -> None:
-    """Keep an amount, under a name of its own: letters of the east make none."""
+def _add_unique(found: dict[str, Amount], amount: Amount) -> None:
+    """Store an amount under a unique name."""
     if amount.name in found and amount.key == found[amount.name].key:
         return
     name, number = amount.name, 1

@@ -1,4 +1,4 @@
-"""Texts that are units: of what an instrument records, or of anything else."""
+"""Recognition of texts that are units, of recorded or other quantities."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tribolab.units.conversion import conversion
 from tribolab.units.reciprocals import Counted
 from tribolab.units.spellings import WEIGHTS
 
-# SI units of what an instrument records: a text that converts to one of them is a unit
+# SI units of recorded quantities: a text that converts to one of them is a unit
 DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
     *("m/s**2", "N m"),
 )
-# what else files hold and no quantity of ours is: areas, volumes, wear rates, power, charges
+# dimensions of other columns in files: areas, volumes, wear rates, power, charges
 _FURTHER = (
     *("ohm", "m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S"),
     *("farad", "kg", "kg/m**3", "S/m", "1/K", "T"),
@@ -27,7 +27,7 @@ _TURNS = re.compile(
 
 
 def is_turns(unit: str) -> bool:
-    """Whether a unit counts revolutions, whatever the name: rpm, U/min.
+    """Whether a unit counts revolutions, in any notation: rpm, U/min.
 
     >>> is_turns("U/min"), is_turns("1/min")
     (True, False)
@@ -37,7 +37,7 @@ def is_turns(unit: str) -> bool:
 
 
 def is_per_minute(unit: str) -> bool:
-    """Whether a unit counts something a minute.
+    """Whether a unit counts something per minute.
 
     >>> is_per_minute("1/min"), is_per_minute("rev/s")
     (True, False)
@@ -47,7 +47,7 @@ def is_per_minute(unit: str) -> bool:
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit of something that an instrument records.
+    """Whether a text is a unit of a recorded quantity.
 
     >>> is_unit("mm/sec"), is_unit("°C"), is_unit("Fx"), is_unit("3")
     (True, True, False, False)
@@ -56,24 +56,24 @@ def is_unit(text: str) -> bool:
 
 
 def measures_something(text: str) -> bool:
-    """Whether a text in brackets is a unit, of whatever: then the column is in nothing else.
+    """Whether a text in brackets is a unit of any quantity, and so that of the column.
 
     >>> measures_something("mm³"), measures_something("N"), measures_something("left")
     (True, True, False)
     """
     if is_unit(text):
         return True
-    letter = len(text) == 1 and text.isascii()  # of a channel rather than of amperes
+    letter = len(text) == 1 and text.isascii()  # more likely a channel than amperes
     return not letter and any(converts(text, dimension) for dimension in _FURTHER)
 
 
-# what is counted, and a length to printers alone
+# counted things, and a length used only by printers
 _COUNTED = frozenset({"point", "points", "pixel", "pixels", "dot", "dots", "line", "lines"})
 
 
-@functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere
+@functools.lru_cache(maxsize=4096)  # failed conversions are not cached elsewhere
 def converts(text: str, si_unit: str, bare: Counted | None = None) -> bool:
-    """Whether a text is a unit that can be turned into an SI unit (`bare`: see `conversion`)."""
+    """Whether a text is a unit that converts to an SI unit (`bare`: see `conversion`)."""
     if not text or re.fullmatch(r"[\d.,+]+", text) or text.lower() in _COUNTED:
         return False
     try:

@@ -1,1 +1,1 @@
-"""Scans that no dialect describes: profiles and maps of heights."""
+"""Scans without a dialect: profiles and maps of heights."""

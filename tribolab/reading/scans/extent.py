@@ -1,4 +1,4 @@
-"""How large a scan is: the part of a map that was measured, and sizes that no scan has."""
+"""Extent of a scan: measured part of a map, and limits of plausible sizes."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from tribolab.reading.scans.limits import (
     MIN_HEIGHTS_OF_LINE,
 )
 
-_LINES = 16  # along x and along y, by which a map is judged
-_USUAL = (0.5, 99.5)  # percentiles: spikes and marks of missing heights are no surface
+_LINES = 16  # lines along x and y used to judge a map
+_USUAL = (0.5, 99.5)  # percentiles that exclude spikes and sentinels
 
 
 class RefusedScanError(ReadError):
-    """A file holds a scan for certain, and what is wrong with it is said."""
+    """Raised if a file certainly contains a scan, and its problem is known."""
 
 
 def measured_part(scan: xr.Dataset) -> xr.Dataset:
-    """Cut a map to the rectangle outside of which no height was measured; x and y begin at 0.
+    """Crop a map to the rectangle with measured heights; x and y begin at 0.
 
     Examples
     --------
@@ -65,12 +65,12 @@ def measured_part(scan: xr.Dataset) -> xr.Dataset:
 
 
 def refuse_impossible(path: Path, scan: xr.Dataset) -> None:
-    """Refuse a map that is larger, or a scan that is finer, than any instrument measures.
+    """Raise if a map is larger, or a scan finer, than any instrument can measure.
 
     Raises
     ------
     RefusedScanError
-        If it is.
+        If the size is impossible.
     """
     for dim in _axes(scan):
         values = scan[dim].values
@@ -92,7 +92,7 @@ def refuse_impossible(path: Path, scan: xr.Dataset) -> None:
 
 
 def doubt_about_heights(scan: xr.Dataset) -> str:
-    """Say that heights are large for the length of a scan, as they are in a wrong unit; else "".
+    """Return a doubt if heights are too large for the length of a scan (wrong unit?); else "".
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ right?'
 
 
 def impossible_heights(scan: xr.Dataset) -> str:
-    """Say that heights are far too large for the size of a scan; else ""."""
+    """Return an error text if heights are impossibly large for the size of a scan; else ""."""
     length = max(float(np.ptp(scan[dim].values)) for dim in _axes(scan))
     known = scan.height.values[np.isfinite(scan.height.values)]
     span = float(np.ptp(np.percentile(known, _USUAL))) if known.size else 0.0
@@ -149,19 +149,19 @@ def _axes(scan: xr.Dataset) -> tuple[str, ...]:
 
 
 def _reach_and_slope(x: np.ndarray, height: np.ndarray) -> tuple[float, float]:
-    """Range of heights over the length of a line, its bow taken off, and their rms slope."""
+    """Return the height range of a line without its bow over its length, and its rms slope."""
     rest = height - np.polynomial.Polynomial.fit(x, height, 2)(x)
     reach = float(np.ptp(np.percentile(rest, _USUAL))) / float(x[-1] - x[0])
     return reach, float(np.sqrt(np.mean((np.diff(rest) / np.diff(x)) ** 2)))
 
 
 def likely_height_unit(numbers: np.ndarray, pitch: float) -> str:
-    """Return the only unit in which heights are those of a surface; "" if several may be.
+    """Return the only unit that gives plausible heights; "" if several do.
 
     Parameters
     ----------
     numbers
-        Heights of a profile as the file writes them (x).
+        Heights of a profile as in the file (x).
     pitch
         Distance of neighbouring heights [m].
 

@@ -1,4 +1,4 @@
-"""Even grids for scans: rounded positions are made even, rows of x, y, z become a map."""
+"""Even grids of scans: rounded positions become even, rows of x, y, z become a map."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import xarray as xr
 from tribolab.arrays.medians import median
 from tribolab.core.errors import ReadError
 
-_JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes nothing
+_JITTER = 0.01  # largest deviation from an even grid, in pitches, that is ignored
 _LARGEST = 1e4  # m
-_SMALLEST = 1e-15  # m, a nucleus
-_FILLED = 0.5  # share of a grid's places from which on the others are missing heights
+_SMALLEST = 1e-15  # m, about the size of a nucleus
+_FILLED = 0.5  # share of grid points that must have heights
 _CLOUD = (
     "of points that lie freely, as on circles, write each line as a profile (distance, height), or "
     "interpolate them to a grid"
@@ -22,7 +22,7 @@ _ROUNDED = 0.6  # in units of the last digit
 def even(
     where: str, x: np.ndarray, height: np.ndarray
 ) -> tuple[float, np.ndarray, dict[str, float | str]]:
-    """Bring a profile on an even grid.
+    """Interpolate a profile to an even grid.
 
     Parameters
     ----------
@@ -34,14 +34,14 @@ def even(
     Returns
     -------
     tuple
-        The pitch [m], the heights from the smallest x on, and attributes that say what was done:
-        ``x_origin_m``; ``x_unevenness`` (largest deviation in pitches); ``resampled``, if the
-        positions are uneven by more than their rounding explains and heights were interpolated.
+        The pitch [m], the heights by increasing x, and attributes on the changes: ``x_origin_m``;
+        ``x_unevenness`` (largest deviation in pitches); ``resampled``, if the positions are uneven
+        beyond rounding and heights were interpolated.
 
     Raises
     ------
     ReadError
-        If the positions are missing, do not proceed in one direction, or do not proceed at all.
+        If the positions are missing, not monotonic, or constant.
     """
     if x.size < 2:
         raise ReadError(f"{where}: a profile needs at least two points, it has {x.size}")
@@ -77,7 +77,7 @@ def even(
             f"{where}: x goes back after point {at + 1} ({x[at]:.9g} m, then {x[at + 1]:.9g} m); "
             "is the file more than one scan?"
         )
-    # the straight line through all positions may begin before the first: nothing is known there
+    # the fitted line may begin before the first position, where nothing is known
     pitch = float(x[-1] - x[0]) / (x.size - 1)
     ideal = x[0] + pitch * count
     unevenness = float(np.abs(ideal - x).max()) / pitch
@@ -90,7 +90,7 @@ def even(
 
 
 def _last_digit(x: np.ndarray) -> float:
-    """Value of the last decimal digit that the positions [m] were written with; 0 if unknown."""
+    """Return the last decimal digit of the positions [m] as a length; 0 if unknown."""
     for power in range(-4, -13, -1):
         counts = x / 10.0**power
         if np.abs(counts - np.round(counts)).max() < 1e-3:
@@ -99,16 +99,15 @@ def _last_digit(x: np.ndarray) -> float:
 
 
 def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.Dataset:
-    """Make a map (y, x) of rows of x, y and height [m], in whatever order they come.
+    """Return a map (y, x) from rows of x, y and height [m] in any order.
 
-    Places of the grid for which no row stands are missing heights (NaN): instruments leave out
-    what they could not measure.
+    Grid points without a row are missing heights (NaN), as instruments leave out invalid points.
 
     Raises
     ------
     ReadError
-        If the points do not fill the better half of a rectangular grid of even steps, once each,
-        or end in the middle of its last line.
+        If the points do not fill more than half of a rectangular grid of even steps, occur twice,
+        or end in the middle of the last line.
     """
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         raise ReadError(f"{where}: a point has no place: x or y is missing or no number")

@@ -1,4 +1,4 @@
-"""What the lines above a map of heights state: distances of its points, sizes, units, counts."""
+"""Interpretation of the lines above a map: pitch, size, units, counts."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ from tribolab.reading.scans.unit_words import (
 )
 from tribolab.units.spellings import unit_of_length
 
-_MAX_LINE = 300  # characters of a line that are looked at
-_MOST_NUMBERS = 2  # of an entry; more are a date, a time, a row of results
+_MAX_LINE = 300  # most characters of a line
+_MOST_NUMBERS = 2  # in an entry; more are a date, a time, or a row of results
 _NUMBER = r"(?<![\w.])[-+]?\d+(?:[{marks}]\d+)?(?:[eE][-+]?\d+)?"
 _CELL_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 _BEHIND = re.compile(r"[\s,;]*[(\[]?(?P<unit>[^\W\d_]+)?(?P<per>\s*(?:/|per)\s*[^\W\d_]+)?")
@@ -37,12 +37,12 @@ _WORD = re.compile(r"[^\W\d_]+")
 
 
 class MapHeader(NamedTuple):
-    """What is stated above a map: pitch along x and y [m], unit of heights [m], rows and columns.
+    """Statements above a map: pitch along x and y [m], unit of heights [m], rows and columns.
 
-    None is what is not stated, or in two ways. `along` [m] is the unit of positions. `stated` are
-    names and numbers that have no unit; `gauge_step` [m] is what whole numbers may be counted in;
-    `without_unit` is a pitch or extent that has none: "cellsize 0.005". `doubt` says what is taken
-    for granted. `sizes` are numbers about the heights with their unit [m], such as their range.
+    Missing or contradictory values are None. `along` [m] is the unit of positions. `stated` are
+    names and numbers without units; `gauge_step` [m] is the possible unit of integers;
+    `without_unit` is a pitch or extent without unit, e.g. "cellsize 0.005". `doubt` describes an
+    assumption. `sizes` are numbers on the heights with their unit [m], e.g. their range.
     """
 
     dx: float | None
@@ -59,7 +59,7 @@ class MapHeader(NamedTuple):
 
 
 class _Entry(NamedTuple):
-    """A name with its numbers and their units of length ("" without), and the axes it names."""
+    """Name with its numbers and their units of length ("" without), and the axes it names."""
 
     key: str
     numbers: tuple[float, ...]
@@ -67,13 +67,13 @@ class _Entry(NamedTuple):
     per_point: bool
 
     def means(self, concept: str) -> bool:
-        """Whether the name stands for a concept of the lexicon, with or without its axis."""
+        """Whether the name matches a concept of the lexicon, with or without its axis."""
         pattern = key_pattern(concept)
         return any(pattern.search(name) for name in _names(self.key))
 
     @property
     def bare(self) -> str:
-        """The name as it is shown."""
+        """Name for display."""
         return " ".join(self.key.strip(" #%;,:=\t").split())
 
 
@@ -85,20 +85,20 @@ def map_header(
     commas_part: bool = False,
     x_unit: str = "",
 ) -> MapHeader:
-    """Understand the lines above a map.
+    """Interpret the lines above a map.
 
     Parameters
     ----------
     lines
         The lines.
     shape
-        Rows and columns of the map, by which an extent becomes a pitch.
+        Rows and columns of the map, to convert an extent to a pitch.
     mark
-        Decimal mark of the map; the lines above may have the other one.
+        Decimal mark of the map; the lines above may use the other one.
     commas_part
-        Whether commas part cells, and are no decimal marks.
+        Whether commas separate cells instead of being decimal marks.
     x_unit
-        Unit of a pitch or an extent that states none.
+        Unit of a pitch or extent without one.
 
     Examples
     --------
@@ -109,7 +109,9 @@ def map_header(
     texts = [
         part
         for line in lines
-        for part in _parts(line[:_MAX_LINE].replace('"', " ").strip(), commas_part=commas_part)
+        for part in _split_entries(
+            line[:_MAX_LINE].replace('"', " ").strip(), commas_part=commas_part
+        )
     ]
     entries = [e for text in texts if (e := _entry(text, mark, commas_part=commas_part))]
     bare = [entry for entry in entries if _lacks_unit(entry)]
@@ -143,9 +145,9 @@ def map_header(
 
 
 def unit_of_range(header: MapHeader, heights: np.ndarray) -> float | None:
-    """Return the unit [m] in which a stated range is that of the heights.
+    """Return the unit [m] in which the heights have the stated range.
 
-    WSxM states it so: "Z Amplitude: 41.2 nm" above a matrix without a unit.
+    WSxM writes "Z Amplitude: 41.2 nm" above a matrix without a unit.
     """
     known = heights[np.isfinite(heights)]
     reach = float(np.ptp(known)) if known.size else 0.0
@@ -153,12 +155,12 @@ def unit_of_range(header: MapHeader, heights: np.ndarray) -> float | None:
     return only_one(fitting)
 
 
-def _parts(text: str, *, commas_part: bool) -> list[str]:
-    """Return the entries of a line about one axis, each with its name; any other line as it is.
+def _split_entries(text: str, *, commas_part: bool) -> list[str]:
+    """Split a line on one axis into entries with names; any other line is unchanged.
 
-    >>> _parts("Axe X;Points;256;Pas;3,2;um", commas_part=False)
+    >>> _split_entries("Axe X;Points;256;Pas;3,2;um", commas_part=False)
     ['x Points: 256', 'x Pas: 3,2 um']
-    >>> _parts("Axe Z;Unit;um;Step;0,1;nm", commas_part=False)
+    >>> _split_entries("Axe Z;Unit;um;Step;0,1;nm", commas_part=False)
     ['z Unit: um', 'z Step: 0,1 nm']
     """
     cells = [cell.strip() for cell in re.split(r"[;\t,]" if commas_part else r"[;\t]", text)]
@@ -177,7 +179,7 @@ def _parts(text: str, *, commas_part: bool) -> list[str]:
 
 
 def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:
-    """Return the name and the numbers of a line; None of one without, or with many."""
+    """Return name and numbers of a line; None without a number or with many."""
     number = _NUMBER.format(marks="." if commas_part else ".,")
     found = list(re.finditer(number, text))
     if not found or len(found) > _MOST_NUMBERS:
@@ -200,7 +202,7 @@ def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:
 
 
 def _number(text: str, mark: str) -> float:
-    """Return a number; NaN where its mark is not the table's and may part thousands: 1,024.
+    """Return a number; NaN if its mark may separate thousands, e.g. 1,024.
 
     >>> _number("2,5", "."), _number("1,024", ","), _number("1,024", ".")
     (2.5, 1.024, nan)
@@ -210,7 +212,7 @@ def _number(text: str, mark: str) -> float:
 
 
 def _names(key: str) -> Iterator[str]:
-    """Give a name without its unit, normalised: as a whole, and without the axes in it."""
+    """Yield a normalised name without its unit: as a whole, and without axes."""
     name = WORD.sub(lambda word: "" if _is_bracketed(key, word) else word[0], key)
     yield normalise_label(name)
     if words := [word for word in words_of(name) if word not in AXES]:
@@ -231,7 +233,7 @@ def _names_axis(entry: _Entry, axis: str) -> bool:
 
 
 def _is_pitch(entry: _Entry) -> bool:
-    """Whether an entry is the distance of neighbouring points across the surface."""
+    """Whether an entry is a lateral pitch."""
     axes = axes_of(entry.key)
     if "z" in axes or entry.means("vertical"):
         return entry.means("pitch") and bool(axes & {"x", "y"})
@@ -240,7 +242,7 @@ def _is_pitch(entry: _Entry) -> bool:
 
 
 def _is_extent(entry: _Entry) -> bool:
-    """Whether an entry is the size of the map."""
+    """Whether an entry is the extent of the map."""
     axes = axes_of(entry.key)
     if "z" in axes or _is_pitch(entry):
         return False
@@ -248,25 +250,25 @@ def _is_extent(entry: _Entry) -> bool:
 
 
 def _lacks_unit(entry: _Entry) -> bool:
-    """Whether an entry is a pitch or an extent across the surface without a unit."""
+    """Whether an entry is a lateral pitch or extent without a unit."""
     whole = all(map(float.is_integer, entry.numbers)) and entry.means("map_points")
     return not any(entry.units) and not whole and (_is_pitch(entry) or _is_extent(entry))
 
 
 def _is_gauge_step(entry: _Entry) -> bool:
-    """Whether an entry is what one count of a gauge is worth: "dz: 0.01 um", "LSB: 2 nm"."""
+    """Whether an entry is the height of one count of a gauge, e.g. "dz: 0.01 um", "LSB: 2 nm"."""
     step = entry.means("gauge_step") or "z" in axes_of(entry.key) - set(words_of(entry.key))
     return bool(entry.units[0]) and step and (is_about_heights(entry.key) or entry.means("lsb"))
 
 
 def _is_size(entry: _Entry) -> bool:
-    """Whether an entry is a length along the heights."""
+    """Whether an entry is a length in height direction."""
     single = len(entry.numbers) == 1 and bool(entry.units[0]) and entry.numbers[0] > 0
     return single and is_about_heights(entry.key)
 
 
 def _is_factor(entry: _Entry) -> bool:
-    """Whether the heights still have to be multiplied by an entry's number."""
+    """Whether the heights must be multiplied by an entry's number."""
     if entry.numbers[0] == 1.0:
         return False
     if is_about_heights(entry.key) and entry.means("height_factor"):
@@ -290,18 +292,20 @@ def _alongaxes_of(
             continue
         x, y = (_names_axis(entry, axis) for axis in "xy")
         if len(lengths) == 2:
-            own["x"].add(_part(lengths[0], columns, parted))
-            own["y"].add(_part(lengths[1], rows, parted))
+            own["x"].add(_pitch_from_length(lengths[0], columns, parted))
+            own["y"].add(_pitch_from_length(lengths[1], rows, parted))
         elif x != y:
-            own["x" if x else "y"].add(_part(lengths[0], columns if x else rows, parted))
-        elif rows == columns:  # of a field that is not square one length may be either side
-            both.add(_part(lengths[0], columns, parted))
+            own["x" if x else "y"].add(
+                _pitch_from_length(lengths[0], columns if x else rows, parted)
+            )
+        elif rows == columns:  # for a rectangular field, a single length is ambiguous
+            both.add(_pitch_from_length(lengths[0], columns, parted))
     dx, dy = (only_one(stated or both) for stated in own.values())
     return dx, dy
 
 
-def _part(length: float, points: int, parted: bool) -> float:
-    """Return the distance of points over a length, whose last one is its end or one step before."""
+def _pitch_from_length(length: float, points: int, parted: bool) -> float:
+    """Return the pitch for a length to the last point or one step beyond it; the rounder one."""
     pitches = [length / points, length / max(points - 1, 1)] if parted else [length]
     return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
 

@@ -1,4 +1,4 @@
-"""Heights that stand for no data though nothing says so: an exact number far from all others."""
+"""Undeclared sentinels among heights: an exact number far from all others."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.reading.scans.limits import (
 
 
 def take_isolated(height: np.ndarray) -> list[Marked]:
-    """Put NaN where an exact height lies far outside all others.
+    """Replace an exact height that is far outside all others by NaN.
 
     Parameters
     ----------
@@ -25,12 +25,12 @@ def take_isolated(height: np.ndarray) -> list[Marked]:
     Returns
     -------
     list of Marked
-        The number [m] and how often it stood there.
+        The number [m] and how often it occurred.
 
     Notes
     -----
-    A mark is the lowest or the highest height, or there is one at both ends. A single height is
-    one only if it is a round number: a grain of dust has digits.
+    A sentinel is the lowest or highest height, or there are two, one at each end. A single height
+    counts as sentinel only if it is a round number, unlike a dust particle.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def take_isolated(height: np.ndarray) -> list[Marked]:
             continue
         bottom, top = float(rest.min()), float(rest.max())
         if all(
-            max(bottom - end, end - top) > _least(end, count) * (top - bottom)
+            max(bottom - end, end - top) > _min_distance(end, count) * (top - bottom)
             for end, count in zip(ends, counts, strict=True)
         ):
             height[np.isin(height, ends)] = np.nan
@@ -59,8 +59,8 @@ def take_isolated(height: np.ndarray) -> list[Marked]:
     return []
 
 
-def _least(number: float, count: int) -> float:
-    """How many ranges away a number must lie that stands there so often."""
+def _min_distance(number: float, count: int) -> float:
+    """Return the distance in height ranges above which a number with this count is a sentinel."""
     if count > 1:
         return MIN_DISTANCE_OF_MARK.value
     rounded = float(f"{number:.{int(MAX_DIGITS_OF_MARK.value)}g}")

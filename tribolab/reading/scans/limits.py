@@ -1,4 +1,4 @@
-"""Numbers that decide which heights are missing and which sizes a scan has, with reasons."""
+"""Limits for missing heights and plausible sizes of a scan, with reasons."""
 
 from tribolab.core.limit import Limit
 

@@ -1,4 +1,4 @@
-"""Read scans: profiles and maps of heights, from text by dialect or from profilometers' files."""
+"""Reading of scans: profiles and maps of heights, by dialect or from profilometer formats."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from tribolab.reading.text.first_bytes import File, peek, results_error
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
-# where the scans of a surface differ, the one that shows least counts for all
+# if scans of a surface differ, the coarsest resolution applies to all
 _WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
 _JOINED = ("source", "source_sha256")
 _ONE_BY_ONE = Cure(notebook="read them with stack=False")
@@ -49,7 +49,7 @@ def read_known_scans(
     x_unit: str | None = None,
     height_unit: str | None = None,
 ) -> list[xr.Dataset]:
-    """Read scans of instruments that are known, and of the formats of profilometers.
+    """Read scans of known instruments and profilometer formats.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def read_known_scans(
     Raises
     ------
     ReadError
-        If there is no such file, it cannot be understood, or it holds results only.
+        If the file does not exist, cannot be interpreted, or contains only results.
     """
     dialect = load_dialect(instrument) if instrument is not None else None
     if isinstance(dialect, PythonReader) and files:
@@ -81,12 +81,12 @@ def read_known_scans(
 
 
 def files_of(paths: PathLike | Sequence[PathLike]) -> list[Path]:
-    """Return the files that a name, a pattern or a list of either stands for.
+    """Return the files for a name, a pattern, or a list of either.
 
     Raises
     ------
     ReadError
-        If no file is given, or none has such a name.
+        If no file is given, or no file matches.
     """
     given = [paths] if isinstance(paths, str | Path) else list(paths)
     if not given:
@@ -97,7 +97,7 @@ def files_of(paths: PathLike | Sequence[PathLike]) -> list[Path]:
     return files
 
 
-@functools.cache  # the descriptions do not change while a program runs
+@functools.cache  # dialects do not change while a program runs
 def _every_dialect() -> tuple[Dialect, ...]:
     return tuple(every_dialect())
 
@@ -109,24 +109,24 @@ def _read(
     if dialect is None:
         dialect = _recognised(path)
     if dialect is not None:
-        scans, sha256 = _by_dialect(path, dialect)
+        scans, sha256 = _read_by_dialect(path, dialect)
     else:
-        scans = _apart(read_undescribed(path, x_unit, height_unit))
+        scans = _split_profiles(read_undescribed(path, x_unit, height_unit))
         sha256 = sha256_of_file(path)
-    return [_finished(path, scan, sha256) for scan in scans]
+    return [_checked_scan(path, scan, sha256) for scan in scans]
 
 
-def _apart(scan: xr.Dataset) -> list[xr.Dataset]:
-    """Return the profiles that a file holds side by side one by one."""
+def _split_profiles(scan: xr.Dataset) -> list[xr.Dataset]:
+    """Return the profiles of a file as separate scans."""
     if "scan" not in scan.dims:
         return [scan]
     number = scan.sizes["scan"]
     return [scan.isel(scan=k).assign_attrs(traces=str(number)) for k in range(number)]
 
 
-def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
-    """Return a scan that was read, if it can be one, with what is known of it."""
-    scan = _without_isolated(scan)
+def _checked_scan(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
+    """Return a scan after checks of its size, with attributes on its source."""
+    scan = _remove_isolated(scan)
     if not np.isfinite(scan.height.values).any():
         raise ReadError(f"{path}: not one height is a number")
     refuse_impossible(path, scan)
@@ -141,8 +141,8 @@ def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
     )
 
 
-def _without_isolated(scan: xr.Dataset) -> xr.Dataset:
-    """Take an exact height far from all others for missing, and say so."""
+def _remove_isolated(scan: xr.Dataset) -> xr.Dataset:
+    """Replace an isolated exact height by NaN, and note it."""
     height = np.array(scan.height.values, dtype=float)
     marks = take_isolated(height)
     if not marks:
@@ -158,7 +158,7 @@ def _without_isolated(scan: xr.Dataset) -> xr.Dataset:
 
 
 def _recognised(path: Path) -> Dialect | None:
-    """Return the text dialect that a file is written in; None for other formats."""
+    """Return the text dialect of a file; None for other formats."""
     # imported late for a quick start
     from tribolab.reading.dialect.recognise import mismatch
 
@@ -169,7 +169,7 @@ def _recognised(path: Path) -> Dialect | None:
     except ReadError:
         if path.stat().st_size == 0:
             raise
-        return None  # a format that only SurfaceTopography may know
+        return None  # a format that possibly only SurfaceTopography can read
     if file.format not in ("text", "tdms"):
         return None
     if error := results_error(file.head, path):
@@ -189,8 +189,8 @@ def _recognised(path: Path) -> Dialect | None:
     return fitting[0] if fitting else None
 
 
-def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
-    """Return the scans of a file, of columns of heights side by side one for each."""
+def _read_by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
+    """Return the scans of a file, one for each column of heights."""
     if isinstance(dialect, PythonReader):
         dialect = with_columns(dialect, path)
     beside = [c for c in dialect.column if c.key == "height" and not c.optional]
@@ -202,7 +202,7 @@ def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
         mine, checksum = _of_columns(path, dialect.model_copy(update={"column": (*others, column)}))
         scans += mine
     for scan in scans:
-        scan.attrs.pop("columns_not_used", None)  # each leaves the others to the others
+        scan.attrs.pop("columns_not_used", None)  # the other columns are other traces
         scan.attrs["traces"] = str(len(scans))
     return scans, checksum
 
@@ -230,8 +230,8 @@ def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
 def _scan_of(
     path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
 ) -> xr.Dataset:
-    """Return the scan that one table is, without isolated heights that are no data."""
-    bare = _without_isolated(xr.Dataset({"height": ("row", columns["height"])}, attrs=dict(attrs)))
+    """Return the scan of one table, without isolated sentinels."""
+    bare = _remove_isolated(xr.Dataset({"height": ("row", columns["height"])}, attrs=dict(attrs)))
     columns, attrs = {**columns, "height": bare.height.values}, dict(bare.attrs)
     return _scan(path, columns, attrs, dialect)
 
@@ -239,7 +239,7 @@ def _scan_of(
 def _scan(
     path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
 ) -> xr.Dataset:
-    """Return the scan that one table is."""
+    """Return the scan of one table."""
     line = _line_of(columns)
     if "y" in columns and line is None:
         scan = gridded(str(path), columns["x"], columns["y"], columns["height"])
@@ -259,7 +259,7 @@ def _scan(
 
 
 def _line_of(columns: Mapping[str, np.ndarray]) -> str | None:
-    """Return the axis along which points of a map lie that are one line: the other stands still."""
+    """Return the axis of a single line of points, if the other coordinate is constant."""
     if "y" not in columns or not columns["height"].size > 1:
         return None
     still = [name for name in ("x", "y") if np.ptp(columns[name]) == 0]
@@ -269,10 +269,10 @@ def _line_of(columns: Mapping[str, np.ndarray]) -> str | None:
 def _stated_pitch(
     path: Path, dialect: Dialect, attrs: Mapping[str, str | float], points: int
 ) -> float:
-    """Distance of neighbouring points [m] that the dialect, or the file's header, says.
+    """Return the pitch [m] stated by the dialect or the file's header.
 
-    A length is parted among the points, each with its share; whether it ends at the last point or
-    a share behind it is seldom said, and changes the distance by less than one part of them.
+    A length is divided by the number of points or of steps, as it is seldom stated whether it ends
+    at the last point; the difference is small.
     """
     if dialect.pitch is not None:
         return positive(dialect.pitch, "m", "pitch")
@@ -290,13 +290,13 @@ def _stated_pitch(
             f"{path}: the {what} is not in the file as the dialect "
             f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
         )
-    return float(said) if dialect.pitch_value else _rounder(float(said), points)
+    return float(said) if dialect.pitch_value else _rounder_pitch(float(said), points)
 
 
-def _rounder(length: float, points: int) -> float:
-    """Return the distance of points over a length, whose last one is its end or one step before.
+def _rounder_pitch(length: float, points: int) -> float:
+    """Return the pitch for a length to the last point or one step beyond it; the rounder one.
 
-    >>> _rounder(2e-4, 400), _rounder(1.995e-4, 400)
+    >>> _rounder_pitch(2e-4, 400), _rounder_pitch(1.995e-4, 400)
     (5e-07, 5e-07)
     """
     pitches = [length / parts for parts in (points, max(points - 1, 1))]
@@ -304,7 +304,7 @@ def _rounder(length: float, points: int) -> float:
 
 
 def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Put scans that were read one by one together, as `scan_files.read_scans` does.
+    """Stack separately read scans, as for `scan_files.read_scans`.
 
     Raises
     ------
@@ -347,7 +347,7 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
 
 
 def _common(attrs: list[Json]) -> Json:
-    """Attributes of all scans; where they differ, joined as text."""
+    """Return the attributes of all scans; different values are joined as text."""
     result: Json = {}
     for key in dict.fromkeys(key for scan in attrs for key in scan):
         values = [scan.get(key) for scan in attrs]

@@ -1,4 +1,4 @@
-"""Results of roughness testers without the profile: RES files of a Surftest, `Ra = 0.523 um`."""
+"""Results of roughness testers without profile: Surftest RES files, `Ra = 0.523 um`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _WITHOUT_UNIT = ("1", "%")
 
 
 def read_tester_results(path: str | Path) -> xr.Dataset:
-    r"""Read the roughness parameters that a roughness tester, such as a Surftest, computed itself.
+    r"""Read the roughness parameters computed by a roughness tester such as a Surftest.
 
     Parameters
     ----------
@@ -46,14 +46,14 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
     xarray.Dataset
         Without dims: ``Ra``, ``Rq``, ``Rz`` [m], ``Rsk``, ``Rku``, ``Rdq`` [1] where given. Other
         parameters and the measuring conditions are attributes, with their unit in the name; a
-        parameter given twice has its condition in the name. What the instrument could not compute
-        (an error code, ``*.***um``) is NaN and named in ``instrument_errors``. The date stays as
-        it is written: 11/01 can be two days.
+        parameter given twice has its condition in the name. Values that the instrument could not
+        compute (an error code, ``*.***um``) are NaN and named in ``instrument_errors``. The date is
+        not converted, as 11/01 is ambiguous.
 
     Raises
     ------
     ReadError
-        If the file is no such file, or a value is neither a number nor an error code.
+        If the file has another format, or a value is neither a number nor an error code.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
 
 
 class _Results:
-    """Parameters by name [m] or [1], what else a file says, and what was not computed."""
+    """Parameters by name [m] or [1], other information, and parameters that were not computed."""
 
     def __init__(self, instrument: str) -> None:
         self.attrs: dict[str, str | float] = {"instrument": instrument}
@@ -77,7 +77,7 @@ class _Results:
         self.errors: list[str] = []
 
     def add(self, name: str, text: str, unit: str, where: str, condition: str = "") -> None:
-        """Add a parameter; one that is given twice has its condition in its name."""
+        """Add a parameter; a repeated one has its condition in its name."""
         name = _NAMES.get(name.lower(), name)
         failed = "*" in text or text.startswith("Err")
         value = np.nan if failed else _number(text, where)
@@ -99,7 +99,7 @@ class _Results:
         self.attrs[key] = float(f"{value * scale:.15g}")
 
     def dataset(self, path: Path) -> xr.Dataset:
-        """Return them; a file without any is refused."""
+        """Return the parameters as a dataset; raise if there are none."""
         if not self.values:
             raise ReadError(f"{path}: no roughness parameter (Ra, Rq, Rz ...) is in the file")
         self.attrs["instrument_errors"] = "; ".join(self.errors) or "none"
@@ -110,9 +110,9 @@ class _Results:
 def _results(path: str | Path) -> xr.Dataset:
     file = peek(path)
     if is_surftest_results(file.head):
-        return _of_surftest(file).dataset(file.path)
+        return _read_surftest(file).dataset(file.path)
     if named_values(file.head):
-        return _by_name(file).dataset(file.path)
+        return _read_named_values(file).dataset(file.path)
     if error := results_error(file.head, file.path):
         raise error
     raise ReadError(
@@ -121,8 +121,8 @@ def _results(path: str | Path) -> xr.Dataset:
     )
 
 
-def _by_name(file: File) -> _Results:
-    """Return what stands in lines of a name, a value and its unit."""
+def _read_named_values(file: File) -> _Results:
+    """Return the results in lines of a name, a value and its unit."""
     found = _Results("results by name")
     for line, (name, number, unit) in named_values(file.head):
         where = f"{file.path}: line {line}, '{shown(name, 40)}'"
@@ -134,8 +134,8 @@ def _by_name(file: File) -> _Results:
     return found
 
 
-def _of_surftest(file: File) -> _Results:
-    """Return what stands in a RES file, by sections."""
+def _read_surftest(file: File) -> _Results:
+    """Return the results of a RES file, by sections."""
     found, section = _Results("surftest_res"), ""
     lines = file.head.decode("latin-1").splitlines()
     names = [line.split(";")[0].strip() for line in lines]

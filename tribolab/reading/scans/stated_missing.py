@@ -1,4 +1,4 @@
-"""Numbers that a file's header states to stand where no height is: "no data: -99999"."""
+"""Sentinels for missing heights that a file's header states: "no data: -99999"."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ import numpy as np
 
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
-_SAME = 2e-7  # relative: a number with single precision
+_SAME = 2e-7  # relative precision of a single-precision number
 _TWICE = 2
-_PARAMETER = re.compile(r"\b[RS]\w{1,2}\b")  # of roughness: Ra, Sq
+_PARAMETER = re.compile(r"\b[RS]\w{1,2}\b")  # roughness parameters: Ra, Sq
 
 
 def take_stated(
     values: np.ndarray, stated: Iterable[tuple[str, float]]
 ) -> list[tuple[str, float, int]]:
-    """Put NaN where a number stands that the header states to stand for no height.
+    """Replace sentinels stated in the header by NaN.
 
     Parameters
     ----------
     values
-        Heights as the file writes them; changed in place.
+        Heights as in the file; changed in place.
     stated
-        Names and numbers, without units, that the header states.
+        Names and numbers without units in the header.
 
     Returns
     -------
     list of tuple
-        The name, the number and how often it stood there. A number whose name is not known is one
-        where it stands far outside of all other heights and is repeated.
+        Name, number and occurrences of each sentinel. A number with an unknown name is a sentinel
+        if it is repeated and far outside all other heights.
 
     Examples
     --------
@@ -50,9 +50,9 @@ def take_stated(
 
 
 def _is_mark(values: np.ndarray, here: np.ndarray, name: str, number: float) -> bool:
-    """Whether a number that is stated lies outside of all others: "missing: 5" may count them.
+    """Whether a stated number is a sentinel and not e.g. a count ("missing: 5").
 
-    A value by its name may stand among them: "no data value: 0".
+    A number whose name says so may be within the range of heights: "no data value: 0".
     """
     rest = values[~here & np.isfinite(values)]
     if not rest.size:

@@ -1,4 +1,4 @@
-"""Several tables of heights in one file: traces of one scan, or one trace in several versions."""
+"""Several tables of heights in one file: traces of one scan, or versions of one trace."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from tribolab.reading.content.model import Piece
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.bounded_patterns import guarded
 
-_TOLD = 5  # tables whose titles are told
+_TOLD = 5  # most titles named in a message
 _NUMBERS = re.compile(r"\d+(?:[.,]\d+)*")
 _LETTERS = re.compile(r"[^\W\d_]+")
-# what says of a table that it was worked out of another
+# titles of tables that were computed from another
 _VERSIONS = re.compile(
     r"(?i)\b(?:raw|primary|filtered|unfiltered|roughness|waviness|levell?ed|form|residual|"
     r"roh\w*|gefiltert\w*|rauheit\w*|welligkeit\w*|prim[aä]r\w*|brut|filtr\w+|rugosit\w+|"
@@ -31,18 +31,18 @@ def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
     pieces
         Its tables.
     dialect
-        Its description; its `only` says which tables are meant.
+        Its dialect; `only` selects tables.
 
     Returns
     -------
     list
-        All tables, where the text before them is the same but for numbers.
+        All tables, if their titles differ only in numbers.
 
     Raises
     ------
     ReadError
-        If the tables may be one trace in several versions, such as raw and filtered: of two
-        versions of the same heights a mean would be of neither.
+        If the tables may be versions of one trace, such as raw and filtered, whose mean would be
+        meaningless.
     """
     if dialect.header.only is not None:
         pattern = guarded(dialect.header.only)
@@ -63,7 +63,7 @@ def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
 
 
 def _title(piece: Piece) -> str:
-    """Return the last line of text before a table that holds letters."""
+    """Return the last line with letters before a table."""
     lines = [line.strip() for line in piece.before.splitlines() if _LETTERS.search(line)]
     return lines[-1] if lines else ""
 
@@ -72,7 +72,7 @@ def _alike(pieces: list[Piece]) -> bool:
     titles = [_title(piece) for piece in pieces]
     if any(_VERSIONS.search(title) for title in titles[1:]) and len(set(titles)) > 1:
         return False
-    # text above the first table may say more: settings, results
+    # the text before the first table may also contain settings and results
     return len({_NUMBERS.sub("", title).strip() for title in titles[1:]}) <= 1
 
 

@@ -1,4 +1,4 @@
-"""Units of length that lines of text state, and whether of heights or of positions."""
+"""Units of length stated in lines of text, for heights or positions."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ AXES = {"x": "x", "y": "y", "z": "z", "xy": "xy", "yx": "xy", "xyz": "xyz"}
 
 
 class StatedUnit(NamedTuple):
-    """A unit of length that a line states, of whatever the words before it name."""
+    """Unit of length stated in a line, with the words before it."""
 
     words: str
     unit: str
 
 
 def axes_of(key: str) -> set[str]:
-    """Return the axes that a name names by their letters: "Step (X)", "dx", "XY".
+    """Return the axes whose letters are in a name: "Step (X)", "dx", "XY".
 
     >>> sorted(axes_of("XY unit")), axes_of("delta x"), axes_of("dy [um]")
     (['x', 'y'], {'x'}, {'y'})
@@ -41,7 +41,7 @@ def axes_of(key: str) -> set[str]:
 
 
 def stated_units(text: str) -> Iterator[StatedUnit]:
-    """Give each unit of length that a line states, with the words before it; none of a number.
+    """Yield each unit of length in a line with the words before it, except units of numbers.
 
     >>> [tuple(unit) for unit in stated_units("X e Y em mm, altura Z em um")]
     [('X e Y em ', 'mm'), (', altura Z em ', 'um')]
@@ -78,7 +78,7 @@ def is_about_heights(words: str) -> bool:
 
 
 def height_unit(units: Iterable[StatedUnit]) -> float | None:
-    """Return the unit of the heights [m], if just one is stated."""
+    """Return the unit of the heights [m], if exactly one is stated."""
     own: set[float] = set()
     of_all: set[float] = set()
     other: set[float] = set()
@@ -100,5 +100,5 @@ def metres(unit: str) -> float:
 
 
 def only_one(values: set[float]) -> float | None:
-    """Return the one value of a set; None if it has none, or several."""
+    """Return the only value of a set; None if it has none or several."""
     return next(iter(values)) if len(values) == 1 else None

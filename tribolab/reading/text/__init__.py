@@ -1,1 +1,1 @@
-"""How text is written, before any dialect: encoding, arrangement, cells, numbers."""
+"""Text format before any dialect: encoding, arrangement, cells, numbers."""

@@ -1,4 +1,4 @@
-"""Regular expressions that other people wrote: they may take their time, but not for ever."""
+"""Regular expressions of dialects with a time limit."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ import regex
 
 from tribolab.core.errors import ReadError, shown
 
-_MAX_PATTERN = 1000  # letters of a pattern
-_SECONDS = 2.0  # that a pattern may take on a little text, and on each _AMOUNT more
+_MAX_PATTERN = 1000  # characters of a pattern
+_SECONDS = 2.0  # time limit for a short text, and for each further _AMOUNT
 _AMOUNT = 1 << 22
 
 
 class PatternError(ValueError):
-    """A pattern is no regular expression."""
+    """Raised if a pattern is not a regular expression."""
 
 
 class Guarded(Generic[AnyStr]):
-    r"""A regular expression of a dialect, which ends in time or with an error.
+    r"""Regular expression of a dialect with a time limit.
 
-    ``(a|aa)+$`` backtracks for longer than anybody lives on the wrong text.
+    On an unsuitable text, ``(a|aa)+$`` would backtrack practically forever.
 
     Parameters
     ----------
     pattern
-        As `re` has it, with ``^`` and ``$`` at every line.
+        As for `re`, with ``^`` and ``$`` matching at every line.
 
     Raises
     ------
     PatternError
-        If it is none.
+        If it is not a regular expression.
 
     Examples
     --------
@@ -48,7 +48,7 @@ class Guarded(Generic[AnyStr]):
             )
         self.pattern: AnyStr = pattern
         try:
-            # of text or of bytes, and then of mapped memory too: the stubs cannot say both
+            # for text or bytes, including mapped memory; the stubs cannot express both
             self._compiled: regex.Pattern[Any] = regex.compile(pattern, regex.MULTILINE)
         except (regex.error, RecursionError, OverflowError, MemoryError) as error:
             raise PatternError(str(error)) from error
@@ -66,7 +66,7 @@ class Guarded(Generic[AnyStr]):
         Raises
         ------
         ReadError
-            If that takes longer than the text is worth.
+            If it exceeds the time limit for the text.
         """
         stop = len(text) if stop is None else stop
         try:
@@ -85,7 +85,7 @@ class Guarded(Generic[AnyStr]):
             raise self._endless() from error
 
     def all(self, text: AnyStr | mmap.mmap, start: int = 0) -> Iterator[regex.Match[AnyStr]]:
-        """Give the matches in a text, one after the other; errors as in `search`."""
+        """Yield the matches in a text; errors as in `search`."""
         limit = _limit(len(text) - start)
         try:
             yield from self._compiled.finditer(text, start, timeout=limit)
@@ -93,12 +93,12 @@ class Guarded(Generic[AnyStr]):
             raise self._endless() from error
 
     def first(self, text: AnyStr) -> AnyStr | None:
-        """Group 1 of the first match, without blanks around it."""
+        """Return group 1 of the first match, without blanks around it."""
         match = self.search(text)
         return match[1].strip() if match and match[1] is not None else None
 
     def last(self, text: AnyStr) -> AnyStr | None:
-        """Group 1 of the last match, without blanks around it."""
+        """Return group 1 of the last match, without blanks around it."""
         last = None
         for last in self.all(text):  # noqa: B007 - the last one is wanted
             pass

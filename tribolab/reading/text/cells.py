@@ -1,4 +1,4 @@
-"""Cells of a line of text, and names and units in those of a header."""
+"""Cells of a line of text, and names and units in header cells."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 
 def split_name(text: str) -> tuple[str, str | None]:
-    """Separate a header's name from the unit in its brackets.
+    """Split a header's name and the unit in brackets.
 
     >>> split_name("Fx [N]")
     ('Fx', 'N')
@@ -22,7 +22,7 @@ def split_name(text: str) -> tuple[str, str | None]:
 
 
 def split_row(line: str, delimiter: str) -> list[str]:
-    """Cells of one line, without quotes and blanks around them.
+    """Return the cells of one line, without quotes and blanks around them.
 
     >>> split_row('1.5, "run, 2" ,3', ",")
     ['1.5', 'run, 2', '3']
@@ -40,7 +40,7 @@ _QUOTED = re.compile(r'"[^"]*"')
 
 
 def _outside_quotes(line: str, delimiter: str) -> list[str]:
-    """Cells of a line in which a delimiter between quotes parts nothing."""
+    """Return the cells of a line with quotes, inside which delimiters are text."""
     texts = _QUOTED.findall(line)
     if not any(delimiter in text for text in texts):
         return line.split(delimiter)

@@ -1,4 +1,4 @@
-"""Dates and times that stand in a column, and clocks that count from a moment of their own."""
+"""Dates and times in columns, and clocks that count from an epoch."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 ISO, ISO_ZONE = "iso", "iso with zone"
 Epoch = Literal["unix", "excel", "labview"]
-# LabVIEW and Unix count in universal time, Excel in that of the place
+# LabVIEW and Unix count in UTC, Excel in local time
 _EPOCHS: dict[Epoch, dt.datetime] = {
     "unix": dt.datetime(1970, 1, 1, tzinfo=dt.UTC),
     "excel": dt.datetime(1899, 12, 30),
@@ -31,17 +31,17 @@ def seconds(texts: Iterable[object], form: str, missing: Collection[str] = ()) -
     form
         "iso", "iso with zone", or as for `datetime.datetime.strptime`.
     missing
-        Texts that stand for no value.
+        Texts for missing values.
 
     Returns
     -------
     numpy.ndarray
-        NaN for empty cells. Times with a zone are in universal time, others in that of the place.
+        NaN for empty cells. Times with a zone are in UTC, others in local time.
 
     Raises
     ------
     ValueError
-        With the first text that has not this form.
+        With the first text in another form.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def seconds(texts: Iterable[object], form: str, missing: Collection[str] = ()) -
     >>> seconds(["01:00:00,5"], "%H:%M:%S,%f").tolist()
     [3600.5]
     """
-    import pandas as pd  # who describes an instrument needs it not
+    import pandas as pd  # not needed to describe an instrument
 
     cells = pd.Series(texts, dtype="object").fillna("").astype(str).str.strip()
     cells = cells.mask(cells.isin(missing), "")
@@ -76,7 +76,7 @@ def is_form(text: str) -> bool:
 
 
 def has_day(form: str) -> bool:
-    """Whether a form says the day, and not the time of day only.
+    """Whether a form includes the date, not only the time of day.
 
     >>> has_day("iso"), has_day("%H:%M:%S")
     (True, False)
@@ -85,7 +85,7 @@ def has_day(form: str) -> bool:
 
 
 def has_zone(form: str) -> bool:
-    """Whether times are said with a zone.
+    """Whether times include a zone.
 
     >>> has_zone("iso with zone"), has_zone("iso")
     (True, False)
@@ -94,12 +94,12 @@ def has_zone(form: str) -> bool:
 
 
 def date_of(epoch: Epoch, since: float) -> dt.datetime:
-    """Return the moment so many seconds after the start of a clock, to the microsecond.
+    """Return the date and time so many seconds after an epoch, to the microsecond.
 
     Raises
     ------
     OverflowError
-        If no calendar reaches so far.
+        If it is beyond the range of dates.
 
     Examples
     --------

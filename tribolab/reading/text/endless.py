@@ -1,4 +1,4 @@
-"""Text with rows or a header of no end, refused before any reader looks for a table in it."""
+"""Refusal of text with endless rows or header before any reader searches for tables."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from tribolab.reading.raw import limits
 from tribolab.reading.raw.opening import RefusedError
 
 _BETWEEN = np.isin(np.arange(256), np.frombuffer(b" \t,;\r\n\0", dtype=np.uint8))
-# a line that begins or ends with a number, or has two of them
+# line that begins or ends with a number, or has two numbers
 _ROW = re.compile(
     rb"^[ \t\"'({\[]*[-+.,]?\d|\d[.,]?[ \t\"',;\r]*$|\d[ \t,;:|][^\n]*\d", re.MULTILINE
 )
 
 
 def refuse_endless(path: Path, head: bytes, size: int) -> None:
-    """Refuse text whose rows have too many cells, or of which a megabyte stands above any row.
+    """Raise if rows of a text have too many cells, or its header exceeds a megabyte.
 
     Parameters
     ----------
     path, head, size
-        The file, its first bytes (a megabyte of a long one) and how many it has.
+        The file, its first bytes (at most a megabyte), and its size.
 
     Raises
     ------
     RefusedError
-        If two lines, or one that is longer than the head, have more cells than a map, or if none
-        of the lines in the head of a longer file is a row of numbers.
+        If two lines, or one longer than the head, have more cells than a map, or if the head of a
+        longer file has no row of numbers.
     """
     letters = np.frombuffer(head, dtype=np.uint8)
     between = _BETWEEN[letters]

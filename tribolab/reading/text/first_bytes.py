@@ -1,4 +1,4 @@
-"""The first look at a file: is it there, is it text, and if not, which binary format."""
+"""First inspection of a file: existence, and text or binary format."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpack
 from tribolab.reading.results_table import find_other_test, find_results_table
 from tribolab.reading.text.endless import refuse_endless
 
-HEAD = 1 << 20  # bytes looked at for preamble and header
+HEAD = 1 << 20  # bytes read for preamble and header
 
 _MAGIC = {
     b"MATLAB 5.0": "mat",
@@ -36,19 +36,19 @@ _MAGIC = {
     b"\xd0\xcf\x11\xe0": "excel",
 }
 _JSON = re.compile(rb'(?:\xef\xbb\xbf)?\s*(?:\{\s*"[^"]*"\s*:|\[\s*[\[{])')
-_SAME = {("netcdf", "hdf5"), ("text", "binary")}  # what else a file of a format may be
+_SAME = {("netcdf", "hdf5"), ("text", "binary")}  # other formats that a file may match
 _FOREIGN = {
     b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",
     b"%PDF": "a PDF",
 }
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
-_WIDE_HEAD = 4096  # bytes that tell how wide letters are
+_WIDE_HEAD = 4096  # bytes sufficient to recognise wide characters
 _FEWEST_BYTES = 64
 
 
 class File(NamedTuple):
-    """A file that can be read: where, of which format, how long, and its first bytes."""
+    """Readable file with path, format, size and first bytes."""
 
     path: Path
     format: str
@@ -57,9 +57,9 @@ class File(NamedTuple):
 
     @property
     def container(self) -> str:
-        """What holds columns by name: the format, JSON as a whole, or binary records; "" of lines.
+        """Format with named columns: that of the file, JSON, or binary records; "" for text lines.
 
-        Binary numbers stand behind a text that says how they are to be read.
+        Binary records follow a text that declares them.
         """
         if self.format != "text":
             return self.format
@@ -69,19 +69,19 @@ class File(NamedTuple):
 
 
 def peek(path: str | Path, *, binary: bool = False) -> File:
-    """Look at the start of a file; of a compressed one, at its content.
+    """Inspect the start of a file; for a compressed file, of its content.
 
     Parameters
     ----------
     path
         The file.
     binary
-        Whether it may be binary of no format that is known, because a dialect describes it.
+        Whether an unknown binary format is accepted, because a dialect describes it.
 
     Raises
     ------
     ReadError
-        If there is no such file, it is no file, is empty, or is of a format that cannot be read.
+        If the file does not exist, is not regular, is empty, or has an unreadable format.
     """
     path = Path(path)
     known = identity_of(path)
@@ -97,7 +97,7 @@ def _seen(path: Path, binary: bool, _: Identity | None) -> File:
             size = file.seek(0, 2)
     except FileNotFoundError as error:
         raise ReadError(f"{path}: {why_missing(path)}") from error
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+    except (OSError, ValueError) as error:  # ValueError: NUL in the path
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     inner = unpacked(path, head)
     if inner != path:
@@ -113,18 +113,18 @@ def _seen(path: Path, binary: bool, _: Identity | None) -> File:
             check_self_contained(path)
         except (RefusedError, MissingLibraryError):
             raise
-        except ReadError:  # damaged: its reader says more
+        except ReadError:  # damaged: its reader reports more
             pass
     return found
 
 
-_seen_at_rest = functools.lru_cache(maxsize=4)(_seen)  # one reading looks at a file several times
+_seen_at_rest = functools.lru_cache(maxsize=4)(_seen)  # inspected several times per reading
 
 
 def wide_encoding(head: bytes) -> str:
-    """Return the encoding of text whose letters are two bytes wide; "" of all else.
+    """Return the encoding of text with two-byte characters; "" for other text.
 
-    Without a mark at the beginning one byte of nearly every letter is zero, always the same.
+    Without a byte order mark, the same byte of nearly every character is zero.
 
     >>> wide_encoding("Zeit [s]".encode("utf-16-le") * 9), wide_encoding(b"Zeit [s]" * 9)
     ('utf-16-le', '')
@@ -139,7 +139,7 @@ def wide_encoding(head: bytes) -> str:
         ("utf-16-be", first[::2], first[1::2]),
     ):
         often = zeros.count(0) > 0.9 * len(zeros) and 0 not in letters
-        # letters and signs, and no small numbers of two bytes
+        # printable characters instead of small two-byte numbers
         plain = sum(byte >= 32 or byte in b"\t\r\n" for byte in letters)
         if often and plain == len(letters):
             return name
@@ -147,7 +147,7 @@ def wide_encoding(head: bytes) -> str:
 
 
 def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
-    """Whether a file of a format may be what a dialect describes.
+    """Whether a file's format is compatible with that of a dialect.
 
     >>> fits_format("netcdf", "hdf5"), fits_format("text", "mat")
     (True, False)
@@ -155,17 +155,17 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
 
 
-_MOST_JSON = 1 << 28  # bytes: it is read as a whole
+_MOST_JSON = 1 << 28  # bytes; it is read as a whole
 
 
 def _is_json(head: bytes) -> bool:
-    """Whether a file is JSON as a whole, and no table below a line of it."""
+    """Whether a file is JSON as a whole, not a table below a line of JSON."""
     if not _JSON.match(head):
         return False
     text = head.decode("utf-8-sig", errors="replace").lstrip()
     try:
         end = json.JSONDecoder().raw_decode(text)[1]
-    except (ValueError, RecursionError):  # it goes on beyond what is looked at, or too deep
+    except (ValueError, RecursionError):  # it continues beyond the head, or is nested too deeply
         return True
     return not text[end:].strip(" \t\r\n,") or text[end:].lstrip()[0] in "{[,"
 
@@ -210,7 +210,7 @@ def _holds_columns(path: Path) -> bool:
     return state.st_size <= _MOST_JSON and _holds_tables(path, state.st_size, state.st_mtime_ns)
 
 
-@functools.lru_cache(maxsize=16)  # a file is looked at more than once
+@functools.lru_cache(maxsize=16)  # a file is inspected more than once
 def _holds_tables(path: Path, size: int, changed: int) -> bool:
     # imported late for a quick start
     from tribolab.reading.raw.containers.json_tables import holds_tables
@@ -224,22 +224,22 @@ def _holds_tables(path: Path, size: int, changed: int) -> bool:
 _MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)
 
 
-# a roughness parameter, its value (asterisks: not computed) and its unit
+# roughness parameter, its value (asterisks: not computed) and its unit
 _NAMED = re.compile(
     r"^\s*(?P<name>[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|\u0394q|Sm|z1max|max|3z|k|pk|vk)\d?|(?:\u03bb|[Ll])[cs]"
     r"|[Cc]ut-? ?off)\s*[:=;,\t ]\s*(?P<value>[-+]?\d+(?:[.,]\d+)?|\*[.,*]*\*)"
     r"\s*[;,\t]?\s*(?P<unit>[^\s\d;,*][^\s;,]*)?\s*[;,]*\s*$"
 )
-_MIN_LINES, _MAX_LINES = 3, 200  # lines of results
+_MIN_LINES, _MAX_LINES = 3, 200  # smallest and largest number of result lines
 
 
 def is_results(head: bytes) -> bool:
-    """Whether a file's first bytes are those of results: of a roughness tester, or a table."""
+    """Whether a file begins like results of a roughness tester or a results table."""
     return results_error(head, Path()) is not None
 
 
 def results_error(head: bytes, where: Path) -> ReadError | None:
-    """Return the error about a file that holds results where signals are wanted; else None."""
+    """Return the error for a file of results where signals are expected; else None."""
     if is_surftest_results(head) or len(named_values(head)) >= _MIN_LINES:
         what = "the file holds the results of a roughness tester, but no profile"
         return ReadError(what, where=where, cure=cures.TESTER_RESULTS)
@@ -262,15 +262,15 @@ def _text_of(head: bytes) -> str:
 
 
 def is_surftest_results(head: bytes) -> bool:
-    """Whether a file's first bytes are those of a Surftest results file."""
+    """Whether a file begins like a Surftest results file."""
     text = head[:4096].decode("latin-1").replace("\r", "")
     return text.startswith("// Header") and _MODE.search(text) is not None
 
 
 def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
-    r"""Lines of a roughness parameter: their number from 1, with name, value and unit.
+    r"""Return lines of roughness parameters: number from 1, with name, value and unit.
 
-    None of a file in which most lines are something else, such as a profile below its results.
+    Empty if most lines are something else, e.g. a profile below its results.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Numbers as few programs write them: −1.5 with a true minus sign, 1.5D-03, "1,5" in quotes."""
+"""Rare number notations: −1.5 with a true minus sign, 1.5D-03, "1,5" in quotes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _WHOLE_IN_QUOTES = re.compile(r'"\s*([+-]?\d+(?:[eE][+-]?\d+)?)\s*"')
 _VALUE = r"[^\S\n]*[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?"
 _UNIT_BEHIND = r"[^\S\n]?(?:[^\W\d_\n]|°|%)[^\s;,\d]{0,7}"
 _MAY_HAVE = rf"{_VALUE}(?:{_UNIT_BEHIND})?"
-# "10.0 mm;3.0 N;1": two cells at least have a unit
+# "10.0 mm;3.0 N;1": at least two cells have a unit
 _ROW_WITH_UNITS = re.compile(
     rf"^(?:{_MAY_HAVE}(?P<mark>[\t;,]))??{_VALUE}{_UNIT_BEHIND}[\t;,](?:{_MAY_HAVE}[\t;,])*?"
     rf"{_VALUE}{_UNIT_BEHIND}(?:[\t;,]{_MAY_HAVE})*[^\S\n]*$",
@@ -20,14 +20,14 @@ _ROW_WITH_UNITS = re.compile(
 )
 _CELL = re.compile(rf"({_VALUE})[^\S\n]?((?:[^\W\d_\n]|°|%)[^\s;,\d]{{0,7}})[^\S\n]*")
 _FEWEST_ROWS = 3
-_LOOKED_AT = 1 << 14  # characters
+_LOOKED_AT = 1 << 14  # characters inspected
 _ROW_IN_QUOTES = re.compile(
     r'(?:^|,)[^\S\n]*"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"[^\S\n]*(?:,|$)', re.MULTILINE
 )
 
 
 def is_unusual(text: str) -> bool:
-    """Whether numbers have a true minus sign, Fortran's exponents, or their unit behind them.
+    """Whether numbers have a true minus sign, Fortran exponents, or a unit after them.
 
     >>> is_unusual("0.1;−1.5"), is_unusual("1.0D-03 2.0D+00"), is_unusual("D-2 -1.5")
     (True, True, False)
@@ -41,7 +41,7 @@ def is_unusual(text: str) -> bool:
 
 
 def usual(text: str) -> str:
-    """Return text with its numbers written as most programs do.
+    """Return text with its numbers in the usual notation.
 
     >>> usual("0.1;−1.5D-03")
     '0.1;-1.5E-03'
@@ -52,7 +52,7 @@ def usual(text: str) -> str:
 
 
 def _units_to_names(text: str, first: re.Match[str]) -> str:
-    r"""Move the units behind the numbers of a table into the row of names above it.
+    r"""Move the units after a table's numbers to the names above it.
 
     >>> rows = "10.0 mm;3.0 N;1\n" * 3
     >>> usual("Weg;Kraft;n\n" + rows).splitlines()[:2]
@@ -66,11 +66,11 @@ def _units_to_names(text: str, first: re.Match[str]) -> str:
     if len(cells) == len(units):
         named = (f"{c.strip()} [{u}]" if u else c for c, u in zip(cells, units, strict=True))
         above = f"{head}{end}{mark.join(named)}\n"
-    return above + "\n".join(mark.join(_bare(row.split(mark), units)) for row in rows)
+    return above + "\n".join(mark.join(_without_units(row.split(mark), units)) for row in rows)
 
 
-def _bare(cells: list[str], units: list[str]) -> list[str]:
-    """Return cells without the unit that their column has."""
+def _without_units(cells: list[str], units: list[str]) -> list[str]:
+    """Return cells without the unit of their column."""
     if len(cells) != len(units):
         return cells
     told = ((cell, _CELL.fullmatch(cell), unit) for cell, unit in zip(cells, units, strict=True))
@@ -78,7 +78,7 @@ def _bare(cells: list[str], units: list[str]) -> list[str]:
 
 
 def has_commas_in_quotes(text: str) -> bool:
-    """Whether commas part the cells, and stand in numbers in quotes as decimal marks, too.
+    """Whether commas separate cells and are also decimal marks of quoted numbers.
 
     >>> has_commas_in_quotes('"0,01","1,5"'), has_commas_in_quotes('"a, b",1.5')
     (True, False)
@@ -87,7 +87,7 @@ def has_commas_in_quotes(text: str) -> bool:
 
 
 def without_commas_in_quotes(text: str) -> str:
-    """Return text whose numbers in quotes have a decimal point and no quotes.
+    """Return text whose quoted numbers have a decimal point and no quotes.
 
     >>> without_commas_in_quotes('"0,01","-1,5e-3","2",Fx')
     '0.01,-1.5e-3,2,Fx'

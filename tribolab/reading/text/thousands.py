@@ -1,4 +1,4 @@
-"""Marks between the thousands of a number: 1.234,5 or "1,234.5" or 1 234,5."""
+"""Thousands separators of numbers: 1.234,5 or "1,234.5" or 1 234,5."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Literal
 
 Mark = Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"]
 _MARKS: tuple[Mark, ...] = (".", ",", "'", " ", "\u00a0", "\u202f")
-_ROWS = 4000  # lines that are looked at
+_ROWS = 4000  # most lines inspected
 _NUMBER = re.compile(r"\s*[+-]?\d[\d.,]*\s*")
-_APART = "\t;"  # delimiters that part numbers whatever marks stand in them
-_BLANK = r"[^\S\t\n]"  # of a cell: a search goes through a row of empty cells but once
-# what every number with both marks has; what every cell of a whole number with one has
+_APART = "\t;"  # delimiters that are unambiguous with any separator
+_BLANK = r"[^\S\t\n]"  # within a cell, so that a search passes a row of empty cells only once
+# patterns of numbers with both marks, and of integers with separators only
 _BOTH = re.compile(rf"\d[{''.join(_MARKS)}]\d{{3}}[.,]\d")
 _WHOLE = re.compile(
     rf"(?m)(?:^|[\t;])(?:{_BLANK}|[+-])*[1-9]\d{{0,2}}(?:[.,]\d{{3}})+{_BLANK}*(?:$|[\t;])"
@@ -21,13 +21,13 @@ _WHOLE = re.compile(
 
 
 def find_thousands(lines: Sequence[str]) -> Mark:
-    """Return the mark between thousands; "" if no number shows one and a decimal mark, too.
+    """Return the thousands separator; "" if no number proves one.
 
     Parameters
     ----------
     lines
-        Lines of a file. Commas that part columns are no such marks: numbers in quotes only are
-        looked at where no tab or semicolon stands in a line.
+        Lines of a file. In lines without tab or semicolon, only quoted numbers are inspected,
+        because commas may separate columns.
 
     Examples
     --------
@@ -47,13 +47,13 @@ def find_thousands(lines: Sequence[str]) -> Mark:
             number = rf"\d{{1,3}}(?:{re.escape(mark)}\d{{3}})+{decimal}\d+"
             if re.search(rf'(?:^|[\t;"]){_BLANK}*[+-]?{number}{_BLANK}*(?:$|[\t;"])', line):
                 return mark
-    return _beside_decimals(lines) if _WHOLE.search(text) else ""
+    return _separator_of_integers(lines) if _WHOLE.search(text) else ""
 
 
-def _beside_decimals(lines: Sequence[str]) -> Mark:
-    """Return the mark of whole numbers of thousands, where others have the other mark's decimals.
+def _separator_of_integers(lines: Sequence[str]) -> Mark:
+    """Return the separator of integers if other numbers use the other mark for decimals.
 
-    1.234 below 987 in a column of whole numbers, and beside 0,25, is no number with three decimals.
+    1.234 in a column with 987, and in a table with 0,25, does not have three decimals.
     """
     columns: dict[int, set[str]] = {}
     for line in lines:
@@ -77,16 +77,16 @@ def _beside_decimals(lines: Sequence[str]) -> Mark:
 
 
 def without_thousands(text: str, mark: Mark, delimiter: str) -> str:
-    """Return text whose numbers have no mark between their thousands.
+    """Return text without thousands separators.
 
     Parameters
     ----------
     text
         Lines of a table.
     mark
-        The mark.
+        Thousands separator.
     delimiter
-        What parts cells. Where it is the mark, only numbers in quotes are numbers of thousands.
+        Delimiter of cells. If it equals the separator, only quoted numbers are changed.
 
     Examples
     --------

@@ -1,1 +1,1 @@
-"""Formats of profiles and maps, one module for each."""
+"""Readers of profile and map formats, one per module."""

@@ -1,4 +1,4 @@
-"""What is said beside arrays by name: units of length, worth of a count, what stands for none."""
+"""Information on named arrays: units of length, scale of counts, sentinels."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _OF_HEIGHTS = re.compile(r"(?i)^(?:z|heights?)_")
 
 
 def tokens(name: str) -> frozenset[str]:
-    """Return the words of an array's own name, normalised.
+    """Return the normalised words of an array's own name.
 
     >>> sorted(tokens("scan/heightMap"))
     ['height', 'heightmap', 'map']
@@ -40,7 +40,7 @@ def tokens(name: str) -> frozenset[str]:
 
 
 def stated_unit(texts: Mapping[str, str], axis: str) -> str | None:
-    """Return the unit of length that texts beside the arrays say of an axis; None if none or two.
+    """Return the unit of length that texts state for an axis; None without or with several.
 
     >>> stated_unit({"info.unit_xy": "um", "info.unit_z": "nm"}, "z")
     'nm'
@@ -66,7 +66,7 @@ def stated_unit(texts: Mapping[str, str], axis: str) -> str | None:
 
 
 def _axes(words: str) -> set[str]:
-    """Return the axes that words name: by letter, or as what lies along or across the surface."""
+    """Return the axes named by words: by letter, or as lateral or height direction."""
     said = set(words_of(words))
     axes = axes_of(words) | ({"x", "y"} if said & _LATERAL else set())
     up = not axes and (is_about_heights(words) or said & _VALUES)
@@ -76,19 +76,19 @@ def _axes(words: str) -> set[str]:
 def scaled(
     heights: HeldArray, z: np.ndarray, unit: str | None, beside: Iterable[HeldArray]
 ) -> tuple[np.ndarray, str | None, list[str]]:
-    """Return heights as their attributes make them of counts, with their unit, and what was none.
+    """Return heights scaled by their attributes, their unit, and the sentinels removed.
 
     Parameters
     ----------
     heights
-        As the file holds them, with their attributes: ``scale_factor`` and ``add_offset``, as CF
-        says, or names like them, and what stands for no height.
+        Heights in the file with their attributes: ``scale_factor`` and ``add_offset`` (CF) or
+        similar names, and sentinels.
     z
-        The numbers, turned perhaps.
+        The numbers, possibly transposed.
     unit
-        Of the heights, if it is known.
+        Unit of the heights, if known.
     beside
-        Other arrays: single numbers named ``z_scale`` belong to heights in counts.
+        Other arrays: single numbers such as ``z_scale`` apply to heights in counts.
     """
     said = {key: value for key, value in heights.attrs.items() if _is_number(value)}
     if heights.values.dtype.kind in "iu":
@@ -115,7 +115,7 @@ def scaled(
 
 
 def unit_of_scale(attrs: Mapping[str, object]) -> str | None:
-    """Return the unit that the name of a scale says.
+    """Return the unit in the name of a scale.
 
     >>> unit_of_scale({"z_scale_nm": 2.0})
     'nm'

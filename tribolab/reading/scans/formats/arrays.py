@@ -1,4 +1,4 @@
-"""Profiles and maps that files hold as arrays by name: `z` (y, x) beside `x` and `y` or a pitch."""
+"""Profiles and maps in named arrays: `z` (y, x) with `x` and `y` or a pitch."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tribolab.reading.text.cells import split_name
 from tribolab.units.conversion import conversion
 from tribolab.units.spellings import unit_of_length
 
-_MIN_ROWS = 8  # rows, and heights of each
+_MIN_ROWS = 8  # least rows, and heights of each
 _HEIGHTS = plain_words("height_array")
 _PERHAPS = frozenset(
     "surface surf depth depths profile profiles profil profils relief trace traces data map".split()
@@ -42,7 +42,7 @@ _NO_HEIGHTS = frozenset(
 _OF_RUNS = frozenset(
     "time t force forces load fx fy fz fn ft friction cof mu velocity speed torque".split()
 )
-_TABLES = {"columns", "column_names", "names", "labels", "channels"}  # of a matrix of signals
+_TABLES = {"columns", "column_names", "names", "labels", "channels"}  # keys of a matrix of signals
 _VALID = frozenset("valid mask good quality".split())
 _ALONG = {
     "x": frozenset("x xx xs xdata xaxis xpos".split()),
@@ -66,15 +66,15 @@ def read_scan_arrays(
     Returns
     -------
     xarray.Dataset or None
-        ``height`` [m] (x), (scan, x) of several profiles, or (y, x); None where no array is named
-        as heights are, or what stands beside it is of a run.
+        ``height`` [m] (x), (scan, x) of several profiles, or (y, x); None if no array has a name of
+        heights, or the other arrays are those of a run.
 
     Raises
     ------
     NotSaidError
-        If it does not say how far its points lie apart or in what its heights are.
+        If the pitch or the unit of heights is not stated.
     ReadError
-        If several arrays may be the heights, or their sizes fit no positions.
+        If several arrays may be the heights, or their sizes match no positions.
     """
     held = read_arrays(path)
     heights = _heights(path, held)
@@ -83,7 +83,7 @@ def read_scan_arrays(
     z = np.asarray(heights.values, dtype=float)
     attrs: dict[str, str | float] = {"instrument": "arrays by name"}
     along = {name: _positions(held.arrays, name, heights) for name in "xy"}
-    z, along = _turned(path, heights.name, z, along)
+    z, along = _orient(path, heights.name, z, along)
     unit = _unit_of(heights, "z", held) or height_unit
     z, unit, lost = scaled(heights, z, unit, held.arrays)
     lost += _without_invalid(held.arrays, heights, z)
@@ -110,19 +110,19 @@ def read_scan_arrays(
             cure=unsaid(path, along=steps["x"] is None, up=unit is None),
         )
     z = measurable(conversion(unit, "m")[0] * z)
-    x, z, evened = _even(path, steps["x"], z)
+    x, z, evened = _on_even_grid(path, steps["x"], z)
     attrs |= evened
     if z.ndim == 1:
         return xr.Dataset({"height": ("x", z)}, {"x": x}, attrs)
     if not is_map:
         return xr.Dataset({"height": (("scan", "x"), z)}, {"x": x}, attrs)
     assert steps["y"] is not None
-    y, turned, _ = _even(path, steps["y"], z.T)
+    y, turned, _ = _on_even_grid(path, steps["y"], z.T)
     return xr.Dataset({"height": (("y", "x"), turned.T)}, {"y": y, "x": x}, attrs)
 
 
 def holds_map(path: Path) -> bool:
-    """Whether a file holds a matrix that is surely one of heights: by its name, or its unit.
+    """Whether a file certainly contains a matrix of heights, by its name or unit.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def holds_map(path: Path) -> bool:
 
 
 def _heights(path: Path, held: HeldArrays) -> HeldArray | None:
-    """Return the one array that is named as heights are, or is the only matrix in a length."""
+    """Return the only array with a name of heights, or the only matrix with a unit of length."""
     large = [a for a in held.arrays if a.values.ndim in (1, 2) and a.values.size >= _MIN_ROWS]
     if any(tokens(a.name) & _OF_RUNS for a in large if a.values.ndim == 1):
         return None
@@ -161,7 +161,7 @@ def _heights(path: Path, held: HeldArrays) -> HeldArray | None:
 
 
 def _positions(arrays: Sequence[HeldArray], axis: str, heights: HeldArray) -> HeldArray | None:
-    """Return the array of positions along an axis; of a mesh its line."""
+    """Return the array of positions along an axis; of a mesh one line."""
     for words in (_ALONG[axis], _PLACES if axis == "x" else frozenset()):
         for array in arrays:
             values = np.asarray(array.values)
@@ -175,10 +175,10 @@ def _positions(arrays: Sequence[HeldArray], axis: str, heights: HeldArray) -> He
     return None
 
 
-def _turned(
+def _orient(
     path: Path, name: str, z: np.ndarray, along: dict[str, HeldArray | None]
 ) -> tuple[np.ndarray, dict[str, HeldArray | None]]:
-    """Return heights with x running along the last dimension."""
+    """Return heights with x along the last dimension, and the positions by axis."""
     if z.ndim == 1:
         return z, {**along, "y": None}
     x, y = along["x"], along["y"]
@@ -202,7 +202,7 @@ def _steps(
     along: dict[str, HeldArray | None],
     x_unit: str | None,
 ) -> dict[str, np.ndarray | None]:
-    """Positions along x and y [m], from arrays or from a pitch that is stated; None if unknown."""
+    """Return positions along x and y [m], from arrays or from a stated pitch; None if unknown."""
     rows, columns = shape if len(shape) == 2 else (1, shape[0])
     own = [
         HeldArray(key, np.asarray(value).reshape(-1)[0], _unit_beside(heights.attrs, key))
@@ -210,7 +210,7 @@ def _steps(
         if isinstance(value, int | float | np.number) or _is_one_number(value)
     ]
     lines = [
-        f"{_bare(array.name)} [{unit}]: {float(array.values):.12g}"
+        f"{_words_without_unit(array.name)} [{unit}]: {float(array.values):.12g}"
         for array in (*held.arrays, *own)
         if array.values.ndim == 0 and (unit := _unit_of(array, "x", held) or x_unit)
     ]
@@ -224,7 +224,7 @@ def _steps(
             unit = _unit_of(array, axis, held) or x_unit
             steps[axis] = None if unit is None else conversion(unit, "m")[0] * array.values
     if len(shape) == 2 and along["x"] is not None and along["y"] is None and rows < columns:
-        steps["y"] = None  # profiles of one x
+        steps["y"] = None  # side-by-side profiles
     return steps
 
 
@@ -233,7 +233,7 @@ def _unit_of(array: HeldArray, axis: str, held: HeldArrays) -> str | None:
 
 
 def _own_unit(array: HeldArray) -> str | None:
-    """Return the unit that an array's attributes or name say, if it is one of length."""
+    """Return the unit of length in an array's attributes or name; None without one."""
     said = next((value for key, value in array.attrs.items() if key.lower() in UNITS), None)
     name, bracket = split_name(array.name)
     last = re.split(r"[\W_]+", name)[-1]
@@ -252,9 +252,9 @@ def _is_one_number(value: object) -> bool:
 
 
 def _unit_beside(attrs: Json, key: str) -> Json:
-    """Return what the unit of an attribute is, if one beside it says: ``pixel_size_unit``.
+    """Return the unit of an attribute from another attribute, e.g. ``pixel_size_unit``.
 
-    It may be that of both axes.
+    It may apply to both axes.
 
     >>> _unit_beside({"pixel_size_unit": "um"}, "pixel_size_x")
     {'unit': 'um'}
@@ -265,10 +265,10 @@ def _unit_beside(attrs: Json, key: str) -> Json:
     return next(({"unit": text} for text in said if isinstance(text, str)), {})
 
 
-def _bare(name: str) -> str:
-    """Return a name in words, without its unit: 'pixel_size_um' is 'pixel size'.
+def _words_without_unit(name: str) -> str:
+    """Return a name in words without its unit: 'pixel_size_um' becomes 'pixel size'.
 
-    >>> _bare("scan/pixel_size_um"), _bare("dx")
+    >>> _words_without_unit("scan/pixel_size_um"), _words_without_unit("dx")
     ('pixel size', 'dx')
     """
     words = re.split(r"[_\s]+", re.split(r"[./]", split_name(name)[0])[-1])
@@ -276,7 +276,7 @@ def _bare(name: str) -> str:
 
 
 def _without_invalid(arrays: Iterable[HeldArray], heights: HeldArray, z: np.ndarray) -> list[str]:
-    """Put NaN where a mask beside the heights says that none was measured, and say so."""
+    """Replace heights marked as invalid by a mask array by NaN, and note their number."""
     told = []
     for array in arrays:
         values = np.asarray(array.values)
@@ -296,10 +296,10 @@ def _without_invalid(arrays: Iterable[HeldArray], heights: HeldArray, z: np.ndar
     return told
 
 
-def _even(
+def _on_even_grid(
     path: Path, positions: np.ndarray | None, z: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, dict[str, float | str]]:
-    """Bring all rows of heights on one even grid."""
+    """Interpolate all rows of heights to one even grid."""
     assert positions is not None
     rows = z.reshape(-1, z.shape[-1])
     made = [even(str(path), positions, row) for row in rows]

@@ -1,6 +1,6 @@
-"""Maps as one column of heights, row after row, below lines that say how many make a row.
+"""Maps as a single column of heights, row after row, with the row length in the header.
 
-So export force microscopes their images as text.
+Force microscopes export their images as such text.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from tribolab.reading.scans.extent import RefusedScanError
 from tribolab.reading.scans.formats.matrix import texts_of, value_of
 from tribolab.reading.scans.header import MapHeader, map_header
 
-_HEAD = 1 << 16  # bytes in which a column begins
-_HEAD_LINES = 500  # above it
-_MIN_ROWS = 8  # rows, and heights of each
-_ROWS = 20  # numbers that tell a column
+_HEAD = 1 << 16  # bytes in which a column must begin
+_HEAD_LINES = 500  # most lines above it
+_MIN_ROWS = 8  # least rows, and heights of each
+_ROWS = 20  # numbers needed to recognise a column
 _FAST = r"(?:\S+ ){{0,4}}?{fastest}"
 
 
 @functools.cache
 def _order_pattern(what: str) -> re.Pattern[str]:
-    """Return a pattern for what `plain_text` gives of lines that state an order of heights."""
+    """Return a pattern for normalised lines (`plain_text`) that state an order of heights."""
     column, row, each, fastest, order = (
         f"(?:{text_pattern(name).pattern})"
         for name in ("map_column", "map_row", "one_by_one", "fastest", "stated_order")
@@ -48,7 +48,7 @@ def _states(line: str, what: str) -> bool:
 
 
 def read_column_map(path: Path) -> xr.Dataset | None:
-    """Read a map whose heights stand below each other.
+    """Read a map whose heights are in one column.
 
     Parameters
     ----------
@@ -58,13 +58,13 @@ def read_column_map(path: Path) -> xr.Dataset | None:
     Returns
     -------
     xarray.Dataset or None
-        ``height`` [m] (y, x); None where the file is no such column, or does not say how many
-        heights make a row, how far they lie apart and in what unit they are.
+        ``height`` [m] (y, x); None if the file is not such a column, or does not state row length,
+        pitch and unit.
 
     Raises
     ------
     RefusedScanError
-        If the text states an order that is not known.
+        If the text states an unknown order.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
@@ -82,14 +82,14 @@ def read_column_map(path: Path) -> xr.Dataset | None:
         heights = _numbers(lines[place:], mark)
         if heights.size != header.rows * header.columns:
             continue
-        if _goes_by_columns(path, lines[:place]):
+        if _is_column_by_column(path, lines[:place]):
             return _map(heights.reshape(header.columns, header.rows).T, header)
         return _map(heights.reshape(header.rows, header.columns), header)
     return None
 
 
-def _goes_by_columns(path: Path, above: list[str]) -> bool:
-    """Whether the heights stand column after column; a stated order that is not known is none."""
+def _is_column_by_column(path: Path, above: list[str]) -> bool:
+    """Whether the heights are stored column by column; raise if a stated order is unknown."""
     if any(_states(line, "by_columns") for line in above):
         return True
     said = [line for line in above if _states(line, "to_and_fro")]
@@ -103,7 +103,7 @@ def _goes_by_columns(path: Path, above: list[str]) -> bool:
 
 
 def _map(heights: np.ndarray, header: MapHeader) -> xr.Dataset:
-    assert header.dx and header.dy and header.height  # else `_header` gives none
+    assert header.dx and header.dy and header.height  # otherwise `_header` returns None
     attrs = {"instrument": "map in one column, by its header"}
     attrs |= {"doubtful": header.doubt} if header.doubt else {}
     if marks := take_marks([heights.reshape(-1)]):
@@ -117,7 +117,7 @@ def _map(heights: np.ndarray, header: MapHeader) -> xr.Dataset:
 
 
 def _header(above: list[str], mark: str) -> MapHeader | None:
-    """Return what stands above, if it says all that is needed."""
+    """Return the header, if it states everything needed."""
     counts = map_header(above, (1, 1), mark)
     if (
         counts.rows is None
@@ -142,7 +142,7 @@ def _begin(lines: list[str]) -> tuple[int, str] | None:
 
 
 def _numbers(lines: list[str], mark: str) -> np.ndarray:
-    """Return the numbers up to the first line that is none; blank lines are passed over."""
+    """Return the numbers up to the first other line; blank lines are ignored."""
     values = []
     for line in lines:
         if not (cell := line.strip()):

@@ -1,7 +1,7 @@
-"""Profiles as national laboratories publish them to test software: SMD and PRF text.
+"""Reference profiles of national laboratories for software tests: SMD and PRF text.
 
 SMD is the format of ISO 5436-2:2001; PRF is that of Talyprofile. Both name the axes in lines that
-begin with CX and CZ. The layouts are those that NPL shows for its soft gauges.
+begin with CX and CZ. The layouts are those of NPL's softgauges.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _AXIS = re.compile(
 _SPACING = re.compile(rb"^[ \t]*SPACING[ \t]+CX[ \t]+([-+\d.eE]+)", re.MULTILINE)
 _TIP = re.compile(rb"^[ \t]*STYLUS_RADIUS[ \t]+([-+\d.eE]+)[ \t]+(\w+)", re.MULTILINE)
 _BREAK = re.compile(rb"[\r\n]+")
-_END = re.compile(rb"[\x03\x1a]+")  # SMD parts its records by ETX
+_END = re.compile(rb"[\x03\x1a]+")  # SMD separates records by ETX
 
 
 def is_gauge(head: bytes) -> bool:
-    """Whether a file's first bytes are those of SMD or PRF text."""
+    """Whether a file begins like SMD or PRF text."""
     axes = {match["axis"] for match in _AXIS.finditer(_lines(head[:8192]))}
     return {b"X", b"Z"} <= axes
 
@@ -40,12 +40,12 @@ def read_gauge(path: Path) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``height`` [m] (x); ``tip_radius_m`` where the file says it.
+        ``height`` [m] (x); ``tip_radius_m`` if stated.
 
     Raises
     ------
     ReadError
-        If fewer heights stand in it than it says, or no distance between them.
+        If heights are fewer than stated, or the pitch is missing.
     """
     content = _lines(path.read_bytes())
     axes = {match["axis"]: match for match in _AXIS.finditer(content)}
@@ -84,7 +84,7 @@ def _lines(content: bytes) -> bytes:
 
 
 def _column(content: bytes, number: int) -> np.ndarray:
-    """Read the lines of one number each; a checksum may stand behind them."""
+    """Return the longest block of lines with one number each; a checksum may follow."""
     longest: list[float] = []
     current: list[float] = []
     for line in content.split(b"\n"):

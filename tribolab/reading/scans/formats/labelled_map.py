@@ -1,6 +1,6 @@
-"""Maps with positions along both sides of their heights, in text or a workbook.
+"""Maps with positions along two sides of the heights, in text or a workbook.
 
-So spreadsheets and mathematics programs write maps: x across the top, y down the side.
+Spreadsheets and mathematics programs write such maps: x across the top, y down the side.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.reading.scans.header import map_header
 from tribolab.units.conversion import conversion
 
-_HEAD_LINES = 60  # above the positions
-_MIN_ROWS = 8  # rows, and heights of each
-_HEAD = 1 << 20  # bytes in which a map begins
-_EVEN = 1e-2  # of a step, by which positions may be rounded
+_HEAD_LINES = 60  # most lines above the positions
+_MIN_ROWS = 8  # least rows, and heights of each
+_HEAD = 1 << 20  # bytes in which a map must begin
+_EVEN = 1e-2  # rounding of positions, as share of a step
 
 
 class _Map(NamedTuple):
-    """Lines above, the corner, positions [own unit] across and down, heights (y, x)."""
+    """Header lines, the corner cell, positions [file's unit] across and down, heights (y, x)."""
 
     above: list[str]
     corner: str
@@ -42,24 +42,24 @@ class _Map(NamedTuple):
 def read_labelled_map(
     path: Path, x_unit: str | None = None, height_unit: str | None = None
 ) -> xr.Dataset | None:
-    """Read a map that has its positions along two sides.
+    """Read a map with positions along two sides.
 
     Parameters
     ----------
     path
         Text, or a workbook.
     x_unit, height_unit
-        Units of positions and heights, where the file states none.
+        Units of positions and heights, if the file states none.
 
     Returns
     -------
     xarray.Dataset or None
-        ``height`` [m] (y, x) from the lowest positions on; None where the file is no such map.
+        ``height`` [m] (y, x) by increasing positions; None if the file is not such a map.
 
     Raises
     ------
     NotSaidError
-        If it is one and does not say in which units its positions and heights are.
+        If units of positions or heights are not stated.
     """
     found = next(filter(None, starmap(_map_of, _tables(path))), None)
     if found is None:
@@ -89,7 +89,7 @@ def read_labelled_map(
 
 
 def _tables(path: Path) -> Iterator[tuple[list[list[str]], str]]:
-    """Give the cells and the decimal mark of each sheet, or of the text by each grammar."""
+    """Yield cells and decimal mark of each sheet, or of the text for each grammar."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     if head.startswith(ZIP):
@@ -105,7 +105,7 @@ def _tables(path: Path) -> Iterator[tuple[list[list[str]], str]]:
 
 
 def _grammars(lines: Sequence[str]) -> list[tuple[str | None, str]]:
-    """Return by which delimiter and decimal mark lines begin such a map."""
+    """Return the delimiters and decimal marks with which lines form such a map."""
     head = lines[: _HEAD_LINES + _MIN_ROWS]
     return [
         (delimiter, mark)
@@ -119,7 +119,7 @@ def _cell(cell: object) -> str:
 
 
 def _begin(rows: Sequence[Sequence[str]], mark: str) -> int | None:
-    """Return the row of positions below which rows of as many cells begin with theirs."""
+    """Return the row of positions at the start of such a map."""
     for place, row in enumerate(islice(rows, _HEAD_LINES)):
         below = rows[place + 1 : place + 1 + _MIN_ROWS]
         if len(row) <= _MIN_ROWS or len(below) < _MIN_ROWS or {len(r) for r in below} != {len(row)}:
@@ -130,13 +130,13 @@ def _begin(rows: Sequence[Sequence[str]], mark: str) -> int | None:
 
 
 def _numbers(cells: Sequence[str], mark: str) -> np.ndarray | None:
-    """Return cells as numbers, NaN of an empty one; None where one is other text."""
+    """Return cells as numbers, with NaN for empty ones; None if a cell is other text."""
     values = [value_of(cell, mark) for cell in cells]
     return None if None in values else np.array(values, float)
 
 
 def _even(values: np.ndarray | None) -> bool:
-    """Whether numbers rise or fall by even steps."""
+    """Whether numbers increase or decrease in even steps."""
     if values is None:
         return False
     steps = np.diff(values)

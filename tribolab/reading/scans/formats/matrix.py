@@ -1,6 +1,6 @@
-"""Maps as text: a matrix of heights below lines that say how large it is, of any maker.
+"""Maps as text of any maker: a matrix of heights below lines that state its size.
 
-So export Keyence, Alicona, Bruker and Zygo microscopes their maps, each with words of its own.
+Keyence, Alicona, Bruker and Zygo microscopes export such maps, each with its own words.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range
 from tribolab.reading.scans.stated_missing import take_stated
 from tribolab.units.conversion import conversion
 
-_HEAD = 1 << 20  # bytes in which a matrix begins
-_CUT = 8  # bytes of a sign at their end
-_HEAD_LINES = 200  # above a matrix
-_MIN_COLUMNS = 8  # columns of a matrix; fewer may be a table
+_HEAD = 1 << 20  # bytes in which a matrix must begin
+_CUT = 8  # bytes of an incomplete character at their end
+_HEAD_LINES = 200  # most lines above a matrix
+_MIN_COLUMNS = 8  # least columns of a matrix; fewer may be a table
 _MOST_OF_LINE = 24  # numbers of one profile in a line
-_ROWS = 4  # of one width tell a matrix
+_ROWS = 4  # rows of equal width needed to recognise a matrix
 _MARKS = frozenset(
     (
         "",
@@ -53,7 +53,7 @@ GRAMMARS = (
 
 
 class _Matrix(NamedTuple):
-    """Rows of numbers: the lines above, what parts cells, whether the last line is shorter."""
+    """Rows of numbers: lines above, delimiter, and whether the last line is shorter."""
 
     above: list[str]
     rows: list[list[float]]
@@ -74,19 +74,20 @@ def read_matrix(
     path
         The file.
     x_unit, height_unit
-        Units of positions and heights, where it states none.
+        Units of positions and heights, if it states none.
 
     Returns
     -------
     xarray.Dataset or None
-        ``height`` [m] (y, x), the rows as the file has them; None where the file is no matrix.
+        ``height`` [m] (y, x), with rows in the order of the file; None if it is not a matrix.
 
     Raises
     ------
     NotSaidError
-        If it is one, but does not say how far its points lie apart or in what its heights are.
+        If the pitch or the unit of heights is not stated.
     ReadError
-        If it holds other numbers of rows and columns than it says, or several matrices.
+        If the numbers of rows and columns differ from the stated ones, or there are several
+        matrices.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
@@ -113,21 +114,21 @@ def read_matrix(
         return None
     heights = np.array(matrix.rows)
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
-        return None  # positions stand beside the heights
+        return None  # the file has a column or row of positions
     counted = any(0 <= n - heights.size < matrix.columns for _, n in header.stated)
     goes_on = matrix.ragged or (counted and matrix.columns <= _MOST_OF_LINE)
     if goes_on and header.columns is None:
-        return None  # a profile whose heights go on from line to line
+        return None  # a profile whose heights continue on the next line
     whole = (heights == np.round(heights)) | np.isnan(heights)
     if header.gauge_step not in (None, header.height) and whole.all():
-        header = header._replace(height=None)  # counts of that step, perhaps
+        header = header._replace(height=None)  # heights are possibly counts of that step
     if header.height is None:
         header = header._replace(height=unit_of_range(header, heights))
     _refuse(path, matrix, header)
-    assert header.dx and header.dy and header.height  # else refused
+    assert header.dx and header.dy and header.height  # otherwise refused
     attrs = {"instrument": "matrix of heights, by its header"}
     attrs |= {"doubtful": header.doubt} if header.doubt else {}
-    if missing := _without_missing(heights, header):
+    if missing := _remove_sentinels(heights, header):
         attrs["taken_for_missing"] = missing
     rows, columns = heights.shape
     return xr.Dataset(
@@ -137,8 +138,8 @@ def read_matrix(
     )
 
 
-def _without_missing(heights: np.ndarray, header: MapHeader) -> str:
-    """Put NaN where a number stands for no height, and say which it was."""
+def _remove_sentinels(heights: np.ndarray, header: MapHeader) -> str:
+    """Replace sentinels by NaN, and return which they were."""
     stated = take_stated(heights, header.stated)
     told = [
         f"height: {Marked(number, count).words}, as the header states ('{shown(name, 30)}')"
@@ -149,7 +150,7 @@ def _without_missing(heights: np.ndarray, header: MapHeader) -> str:
 
 
 def texts_of(content: bytes) -> list[str]:
-    """Return the content in each encoding that fits; most files fit the first only."""
+    """Return the content in each encoding that fits, usually only the first."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return [content.decode("utf-16", "replace")]
     if b"\0" in content[:8192]:
@@ -160,14 +161,14 @@ def texts_of(content: bytes) -> list[str]:
             texts.append(content.decode(encoding))
         except UnicodeDecodeError as error:
             if len(content) - error.start < _CUT and encoding != "latin-1":
-                texts.append(content[: error.start].decode(encoding))  # a sign cut in two
+                texts.append(content[: error.start].decode(encoding))  # incomplete character
         if texts and encoding == "utf-8-sig":
             break
     return texts
 
 
 def _matrix(lines: list[str]) -> _Matrix | None:
-    """Find the first rows of numbers of one width, below which no names of columns stand."""
+    """Return the first rows of numbers of equal width, unless column names are above them."""
     for start in range(min(len(lines), _HEAD_LINES)):
         first = lines[start : start + _ROWS]
         if len(first) < _ROWS or not first[0].strip():
@@ -177,18 +178,18 @@ def _matrix(lines: list[str]) -> _Matrix | None:
             trial = _Matrix(lines[:start], [], delimiter, mark, columns)
             if columns < _ROWS or any(_numbers(line, trial) is None for line in first):
                 continue
-            return None if _is_named(trial) else _filled(lines[start:], trial)
+            return None if _is_named(trial) else _complete(lines[start:], trial)
     return None
 
 
 def _is_named(matrix: _Matrix) -> bool:
-    """Whether names or positions of columns stand above."""
+    """Whether names or positions of columns are above the matrix."""
     last = next((line for line in reversed(matrix.above) if line.strip()), "")
     return len(cells_of(last, matrix.delimiter)) >= max(_ROWS, matrix.columns - 1)
 
 
-def _filled(lines: Sequence[str], like: _Matrix) -> _Matrix:
-    """Take all rows; `alone` says whether no others follow on what is no row."""
+def _complete(lines: Sequence[str], like: _Matrix) -> _Matrix:
+    """Return the matrix with all its rows; `alone` is whether no other rows follow."""
     rows: list[list[float]] = []
     for number, line in enumerate(lines):
         values = _numbers(line, like) if line.strip() else None
@@ -208,13 +209,13 @@ def _is_part(line: str, like: _Matrix) -> bool:
 
 
 def cells_of(line: str, delimiter: str | None) -> list[str]:
-    """Return the cells of a line; a delimiter at its end begins none."""
+    """Return the cells of a line, without an empty one after a final delimiter."""
     cells = [cell.strip().strip('"') for cell in line.split(delimiter)]
     return cells[:-1] if delimiter is not None and line.rstrip().endswith(delimiter) else cells
 
 
 def _numbers(line: str, like: _Matrix) -> list[float] | None:
-    """Return the numbers of a row, NaN where no height is; None of any other line."""
+    """Return the numbers of a row, with NaN for missing heights; None for any other line."""
     cells = cells_of(line, like.delimiter)
     if len(cells) == like.columns - 1 and like.delimiter is not None:
         cells.append("")  # the last height is missing
@@ -230,7 +231,7 @@ def _numbers(line: str, like: _Matrix) -> list[float] | None:
 
 
 def value_of(cell: str, mark: str) -> float | None:
-    """Return a cell's number, NaN of one without a height, None of any other text."""
+    """Return the number in a cell, NaN for a missing height, None for any other text."""
     try:
         return float(cell if mark == "." else cell.replace(".", "x").replace(mark, "."))
     except ValueError:
@@ -239,13 +240,13 @@ def value_of(cell: str, mark: str) -> float | None:
 
 
 def _even(values: np.ndarray) -> bool:
-    """Whether numbers rise by even steps, as positions do."""
+    """Whether numbers increase in even steps, as positions do."""
     steps = np.diff(values)
     return bool(steps.size > 1 and (np.abs(steps - steps[0]) < 1e-3 * abs(steps[0])).all())
 
 
 def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
-    """Refuse a matrix that is not whole, or of which too little is said."""
+    """Raise if a matrix is incomplete, or its header insufficient."""
     rows, columns = len(matrix.rows), matrix.columns
     apart = "how far its points lie apart along x and y"
     if header.without_unit:
@@ -262,7 +263,7 @@ def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
         what = f"a matrix of {rows} x {columns} numbers that does not say {' or '.join(lacking)}"
         write = "write it above the numbers, as 'Pixel size: 0.5 um' and 'Height unit: um'"
         along = not (header.dx and header.dy)
-        if along and not header.without_unit:  # of which a name says the unit alone
+        if along and not header.without_unit:  # names that state only the unit
             raise NotSaidError(what, where=path, cure=write)
         cure = unsaid(path, along=along, up=header.height is None)
         raise NotSaidError(what, where=path, cure=cures.either(write, cure))

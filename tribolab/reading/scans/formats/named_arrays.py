@@ -1,4 +1,4 @@
-"""Arrays that files hold by name: NumPy (npz, npy), MATLAB, HDF5 and netCDF."""
+"""Named arrays in files of NumPy (npz, npy), MATLAB, HDF5 and netCDF."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ NPY = b"\x93NUMPY"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _NETCDF = (b"CDF\x01", b"CDF\x02")
 _MATLAB = (b"MATLAB 5.0", b"MATLAB 7.3")
-_MAX_TEXT = 500  # characters of a text that is kept
-_MOST = 200  # arrays of a file
+_MAX_TEXT = 500  # most characters of a text
+_MOST = 200  # most arrays of a file
 
 
 class HeldArray(NamedTuple):
-    """An array of numbers, with what the file says beside it."""
+    """Array of numbers with its attributes in the file."""
 
     name: str
     values: np.ndarray
@@ -39,7 +39,7 @@ class HeldArrays(NamedTuple):
 
 
 def is_npz(path: Path) -> bool:
-    """Whether a zip archive is one of NumPy's."""
+    """Whether a zip archive is a NumPy archive."""
     try:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
@@ -49,7 +49,7 @@ def is_npz(path: Path) -> bool:
 
 
 def holds_arrays(path: Path, head: bytes) -> bool:
-    """Whether a file is of a format that holds arrays by name."""
+    """Whether a file has a format with named arrays."""
     marks = (NPY, _HDF5, *_NETCDF, *_MATLAB)
     return head.startswith(marks) or (head.startswith(b"PK\x03\x04") and is_npz(path))
 
@@ -92,7 +92,7 @@ def _of_numpy(path: Path) -> HeldArrays:
         for name in archive.files[:_MOST]:
             try:
                 _take(held, name, archive[name], {})
-            except ValueError:  # objects of Python: nothing that is measured
+            except ValueError:  # Python objects, which contain no measurement
                 continue
     return held
 
@@ -114,7 +114,7 @@ def _of_netcdf(path: Path) -> HeldArrays:
 
     held = HeldArrays([], {})
     with netcdf_file(path, "r", mmap=False, maskandscale=False) as file:
-        _tell(held, "", {k: plain(v) for k, v in vars(file)["_attributes"].items()})
+        _add_attributes(held, "", {k: plain(v) for k, v in vars(file)["_attributes"].items()})
         for name, variable in file.variables.items():
             attrs = {k: plain(v) for k, v in vars(variable)["_attributes"].items()}
             _take(held, name, np.array(variable.data), attrs)
@@ -131,7 +131,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
     def visit(name: str, item: object) -> None:
         attrs = {str(k): plain(v) for k, v in getattr(item, "attrs", {}).items()}
         if not isinstance(item, h5py.Dataset):
-            _tell(held, name, attrs)
+            _add_attributes(held, name, attrs)
             return
         if item.shape is None or len(held.arrays) >= _MOST or item.dtype.names:
             return
@@ -142,7 +142,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
                 held.texts[name] = str(plain(item[()]))[:_MAX_TEXT]
         else:
             values = np.asarray(item[()])
-            if "MATLAB_class" in attrs:  # whose columns are HDF5's rows
+            if "MATLAB_class" in attrs:  # columns in MATLAB are rows in HDF5
                 values = values.T
                 values = values.ravel() if values.ndim == 2 and 1 in values.shape else values
             _take(held, name, values, attrs)
@@ -164,8 +164,8 @@ def _take(held: HeldArrays, name: str, values: np.ndarray, attrs: Json) -> None:
             held.texts[f"{name}.{key}"] = value
 
 
-def _tell(held: HeldArrays, name: str, attrs: Json) -> None:
-    """Keep what is said of a group as if it stood in it."""
+def _add_attributes(held: HeldArrays, name: str, attrs: Json) -> None:
+    """Store the attributes of a group like its members."""
     for key, value in attrs.items():
         full = f"{name}/{key}" if name else key
         if isinstance(value, str):

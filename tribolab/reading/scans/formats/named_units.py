@@ -1,4 +1,4 @@
-"""Units of length in a file's own name, for files that state none: `plate3_xy-mm_z-um.asc`."""
+"""Units of length in a file name, for files without units: `plate3_xy-mm_z-um.asc`."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _SAID = re.compile(
 
 
 class NamedUnits(NamedTuple):
-    """Units of positions and heights that a file's name says; None where it does not."""
+    """Units of positions and heights in a file name; None if not stated."""
 
     x: str | None
     height: str | None
 
 
 def units_in_name(path: Path) -> NamedUnits:
-    """Return the units that a file's name says, where it says just one.
+    """Return the units in a file name, if each is unambiguous.
 
     >>> units_in_name(Path("plate3_xy-mm_z-um.asc")), units_in_name(Path("scan_x_mm.txt"))
     (NamedUnits(x='mm', height='um'), NamedUnits(x='mm', height=None))
@@ -40,7 +40,7 @@ def units_in_name(path: Path) -> NamedUnits:
 
 
 def unsaid(path: Path, *, along: bool, up: bool) -> Cure:
-    """Return how to say units that a file does not: of positions, of heights, or of both."""
+    """Return instructions for stating missing units of positions, heights, or both."""
     arguments = {"x_unit": "mm"} if along else {}
     arguments |= {"height_unit": "um"} if up else {}
     said = " and ".join(f"{name}='{unit}'" for name, unit in arguments.items())

@@ -1,4 +1,4 @@
-"""What has to hold before a file is given to SurfaceTopography, whose readers trust files."""
+"""Safety checks before a file is read by SurfaceTopography, whose readers trust files."""
 
 from __future__ import annotations
 
@@ -12,49 +12,49 @@ from tribolab.core.errors import ReadError
 
 _MEGABYTE = 1 << 20
 _BINARY = (b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
-_MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # of text that no dialect describes
-_HEADER_LINES = 200  # as many as SurfaceTopography's reader of columns passes over
-_LONG = 4096  # bytes of a line of words: its patterns take a time that grows with the square
+_MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # limits of text without a dialect
+_HEADER_LINES = 200  # header lines that SurfaceTopography's column reader can skip
+_LONG = 4096  # bytes of a line of words, for patterns that take quadratic time
 _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
-# SurfaceTopography's formats for text, in its own order of trial; "xyz" tries every line of a
-# file's start as the first row, so it is for tables that are numbers to their end.
+# SurfaceTopography's text formats in its order; "xyz" takes any first line as a row, so it is used
+# only for tables of numbers up to their end
 _TEXT = ("sdf", "xyz", "asc")
 
 
 def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str]:
-    """Say which formats SurfaceTopography may try on a file, in this order.
+    """Return the formats that SurfaceTopography may try on a file, in order.
 
     Parameters
     ----------
     path
         The file.
     sure, possible
-        SurfaceTopography's formats that the file's first bytes show, and do not exclude.
+        SurfaceTopography's formats that the first bytes prove, and do not exclude.
 
     Raises
     ------
     ReadError
         If the file would unpack to more than it can hold, its structure is damaged in a way that
-        could crash native code, or it is text that is no profile.
+        could crash native code, or it is text other than a profile.
     """
     with path.open("rb") as file:
         head = file.read(_MEGABYTE)
     if head.startswith(b"PK\x03\x04") and not zipfile.is_zipfile(path):
         raise ReadError(f"{path}: the zip or Office file is damaged; copy or save it again")
     if head.startswith(b"MATLAB 5.0"):
-        _arrays_only(path)
+        _check_mat_file(path)
     elif head.startswith(_BINARY):
         pass
     elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return list(dict.fromkeys([*sure, *_text_formats(path)]))
-    # any bytes of twice a square number make a map of "hgt", which has no mark but its name
+    # any file of twice a square number of bytes is a valid "hgt" map, which has no signature
     unmarked = {*_TEXT} if path.suffix.lower() == ".hgt" else {*_TEXT, "hgt"}
     every = dict.fromkeys([*sure, *possible])
     return [name for name in every if name not in unmarked or name in sure]
 
 
-def _arrays_only(path: Path) -> None:
-    """Read the MAT file with our own reader first: it holds every size against the file's."""
+def _check_mat_file(path: Path) -> None:
+    """Read a MAT file with our own reader first, which checks every size."""
     # imported late for a quick start
     from tribolab.reading.raw.containers.mat import read_variables
 
@@ -68,7 +68,7 @@ def _text_formats(path: Path) -> list[str]:
     content = path.read_bytes()
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         content = content.decode("utf-16", errors="replace").encode()
-    _no_endless_lines(path, content)
+    _refuse_endless_lines(path, content)
     lines = re.split(rb"\r\n|\r|\n", content)
     words = [number for number, line in enumerate(lines) if not _NUMBERS.fullmatch(line)]
     for number in words:
@@ -83,9 +83,9 @@ def _text_formats(path: Path) -> list[str]:
     return [name for name in _TEXT if columns or name != "xyz"]
 
 
-def _no_endless_lines(path: Path, content: bytes) -> None:
-    """Refuse text whose lines, or whose one line, would take all memory."""
-    count = content.count(b"\n") + content.count(b"\r")  # before a list of them is made
+def _refuse_endless_lines(path: Path, content: bytes) -> None:
+    """Raise for text with lines too long for the memory."""
+    count = content.count(b"\n") + content.count(b"\r")  # before creating a list of lines
     if count > _MOST_LINES:
         raise ReadError(
             f"{path}: {count} lines are more than a profile or map without a dialect may have "
@@ -102,7 +102,7 @@ def _no_endless_lines(path: Path, content: bytes) -> None:
 
 
 def _width(line: bytes) -> int | None:
-    """Count the cells of a row of numbers; None if one is no number."""
+    """Return the number of cells in a row of numbers; None for other rows."""
     cells = re.split(rb"[\s,;]+", line.strip())
     try:
         [float(cell) for cell in cells]

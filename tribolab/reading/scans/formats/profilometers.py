@@ -22,11 +22,11 @@ from tribolab.reading.scans.grid import even
 from tribolab.reading.text.first_bytes import peek
 from tribolab.units.conversion import conversion, to_si
 
-_OF_PROGRAM = (LookupError, TypeError, AttributeError, AssertionError)  # no words about a file
+_OF_PROGRAM = (LookupError, TypeError, AttributeError, AssertionError)  # no information on the file
 
 
 class NotSaidError(ReadError):
-    """A scan could be read, if its file said what is lacking."""
+    """Raised if a scan lacks only information that can be stated."""
 
 
 @isolated("xarray", "SurfaceTopography", "SurfaceTopography.IO")
@@ -45,12 +45,12 @@ def read_foreign(
     Returns
     -------
     xarray.Dataset
-        ``height`` [m] (x) or (y, x), with what the file says of the instrument as attributes.
+        ``height`` [m] (x) or (y, x), with information on the instrument as attributes.
 
     Raises
     ------
     ReadError
-        If SurfaceTopography is missing or does not know the format, or no unit is known.
+        If SurfaceTopography is missing, or format or unit is unknown.
     """
     try:
         # imported late: SurfaceTopography loads slowly
@@ -68,9 +68,9 @@ def read_foreign(
     sure = [name for name, how in match.items() if how == MagicMatch.YES]
     possible = [name for name, how in match.items() if how != MagicMatch.NO]
     formats = formats_to_try(path, sure, possible)
-    with _foreign(path), warnings.catch_warnings():
-        # pictures in a workbook are no concern of ours, nor are numbers too large for a file's own
-        # arithmetic: they come out as infinite, and infinite heights are missing ones
+    with _read_errors(path), warnings.catch_warnings():
+        # ignore warnings on pictures in a workbook, and on overflows: infinite heights count as
+        # missing
         warnings.simplefilter("ignore")
         with _opened(path, formats, open_topography) as reader:
             channel, topography, vertical = _topography(path, reader, x_unit, height_unit)
@@ -91,7 +91,7 @@ def read_foreign(
     with np.errstate(over="ignore", invalid="ignore"):
         heights = heights * vertical
     heights[~np.isfinite(heights)] = np.nan
-    # formats that know no mark for lost points hold the numbers that programs choose for it
+    # formats without a mark for missing points contain sentinels
     if marks := take_marks([heights.reshape(-1)], vertical):
         attrs["taken_for_missing"] = "; ".join(f"height: {mark.words}" for mark in marks)
     heights = measurable(heights)
@@ -100,7 +100,7 @@ def read_foreign(
     if len(points) == 2:
         # SurfaceTopography's first index is x
         steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]
-        if 1 in points and max(points) > 1:  # a profile, in a format of maps
+        if 1 in points and max(points) > 1:  # a profile in a format of maps
             pitch, heights = steps[int(points[0] == 1)], heights.ravel()
             return xr.Dataset(
                 {"height": ("x", heights)}, {"x": pitch * np.arange(heights.size)}, attrs
@@ -117,8 +117,8 @@ def read_foreign(
 
 
 @contextlib.contextmanager
-def _foreign(path: Path) -> Iterator[None]:
-    """Around calls of SurfaceTopography only: its readers raise whatever they stumble over."""
+def _read_errors(path: Path) -> Iterator[None]:
+    """Convert any exception of SurfaceTopography's readers to ReadError."""
     try:
         yield
     except TribolabError:
@@ -132,13 +132,13 @@ def _foreign(path: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[Any]:
-    """Open a file with the first of some formats that takes it."""
+    """Open a file with the first suitable one of some formats."""
     reader = None
     for name in formats:
         try:
             reader = open_topography(str(path), format=name)
             break
-        except Exception as error:  # a format that does not fit says so in its own way
+        except Exception as error:  # unsuitable formats raise different errors
             refused = error
     if reader is None:
         said = "" if isinstance(refused, _OF_PROGRAM) else f": {brief(refused)}"
@@ -160,7 +160,7 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
 def _topography(
     path: Path, reader: Any, x_unit: str | None, height_unit: str | None
 ) -> tuple[Any, Any, float | None]:
-    """Channel, topography, and what turns its heights into m, if its own unit does not."""
+    """Return channel, topography, and factor of heights to m if the channel has no unit."""
     channel = reader.default_channel
     given: Arguments = {}
     if channel.physical_sizes is None:
@@ -193,7 +193,7 @@ def _name(reader: Any) -> str:
 
 
 def _instrument(info: Json) -> dict[str, str | float]:
-    """Attributes from what SurfaceTopography found beside the heights."""
+    """Return attributes from SurfaceTopography's information on the file."""
     attrs: dict[str, str | float] = {}
     if "acquisition_time" in info:
         attrs["recorded_at"] = str(info["acquisition_time"])
@@ -214,7 +214,7 @@ def _instrument(info: Json) -> dict[str, str | float]:
 
 
 def result(name: str, value: float, unit: str) -> dict[str, float]:
-    """Return an instrument's own result as an attribute in SI, its unit in the name.
+    """Return an instrument's own result as an attribute in SI, with the unit in its name.
 
     >>> result("Rq", 3.959, "µm")
     {'instrument_Rq_m': 3.959e-06}

@@ -1,6 +1,6 @@
-"""SDF files whose first bytes name the draft of the standard: ``aBCR-1.0``, ``bBCR-1.0``.
+"""SDF files with the signature of the draft standard: ``aBCR-1.0``, ``bBCR-1.0``.
 
-Their layout is that of ``aISO-1.0`` and ``bISO-1.0``, which alone SurfaceTopography (1.27) knows.
+Their layout is that of ``aISO-1.0`` and ``bISO-1.0``, the only ones SurfaceTopography (1.27) reads.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _MARK = 8  # bytes
 
 
 def is_sdf_draft(head: bytes) -> bool:
-    """Whether a file's first bytes are those of the draft.
+    """Whether a file begins like the draft format.
 
     >>> is_sdf_draft(b"aBCR-1.0"), is_sdf_draft(b"aISO-1.0")
     (True, False)
@@ -24,7 +24,7 @@ def is_sdf_draft(head: bytes) -> bool:
 
 
 def as_standard(path: Path) -> Path:
-    """Return a copy of such a file that bears the mark of the standard."""
+    """Return a copy of such a file with the signature of the standard."""
     state = path.stat()
     return _copied(path.resolve(), state.st_size, state.st_mtime_ns)
 

@@ -1,6 +1,6 @@
-"""Surf files of Digital Surf as SurfaceTopography (1.27) reads them: not packed, units in Latin-1.
+"""Digital Surf files converted for SurfaceTopography (1.27): uncompressed, units in Latin-1.
 
-Since 2010 the makers' software packs the heights (``DSCOMPRESSED``) unless it is told not to.
+Since 2010 the makers' software compresses the heights (``DSCOMPRESSED``) by default.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ _UTF8_MICRO, _MICRO = "µ".encode(), "µ".encode("latin-1")
 
 
 def is_sur(head: bytes) -> bool:
-    """Whether a file's first bytes are those of a Surf file."""
+    """Whether a file begins like a Surf file."""
     return head.startswith((_PLAIN, _PACKED))
 
 
 def plain_sur(path: Path) -> Path:
-    """Return where the file lies that SurfaceTopography reads: itself, or a copy of it.
+    """Return the path of a file readable by SurfaceTopography: the file, or a copy.
 
     Raises
     ------
     ReadError
-        If it is cut short or damaged.
+        If it is incomplete or damaged.
     """
     with path.open("rb") as file:
         header = file.read(_HEADER)
@@ -65,7 +65,7 @@ def _copied(path: Path, size: int, modified: int) -> Path:
 
 
 def _unpacked(body: bytes, size: int) -> bytes:
-    """Unpack the streams of a packed file, which may not hold more than the heights."""
+    """Decompress the streams of a file, limited to the size of the heights."""
     (number,) = struct.unpack_from("<I", body)
     if not 0 < number <= 1024 or size < 0:
         raise ValueError(f"{number} packed parts of {size} bytes")

@@ -1,4 +1,4 @@
-"""Grids of Surfer: text (DSAA) and single precision (DSBB). Neither states any unit."""
+"""Surfer grids: text (DSAA) and single precision (DSBB), without units."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.units.conversion import conversion
 
 _TEXT, _SINGLE = b"DSAA", b"DSBB"
-_BLANK = 1.70141e38  # stands where no height is; larger numbers do, too
-_MOST = 100_000_000  # heights
+_BLANK = 1.70141e38  # sentinel; larger numbers are sentinels, too
+_MOST = 100_000_000  # most heights
 
 
 def is_surfer(head: bytes) -> bool:
-    """Whether a file's first bytes are those of a Surfer grid."""
+    """Whether a file begins like a Surfer grid."""
     return head.startswith((_TEXT, _SINGLE))
 
 

@@ -1,4 +1,4 @@
-"""Scans that no dialect describes, by the format that their first bytes show."""
+"""Scans without a dialect, read by the format of their first bytes."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from tribolab.reading.scans.formats.surfer import is_surfer, read_surfer
 from tribolab.reading.scans.formats.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.reading.scans.formats.zygo_xyz import is_zygo_xyz, read_zygo_xyz
 
-_HEAD = 1 << 14  # bytes that tell a format
+_HEAD = 1 << 14  # bytes sufficient to recognise a format
 
 
 def is_own_text(path: Path) -> bool:
-    """Whether a file is text of a format that is read here: what is wrong with it is said."""
+    """Whether a file is text of a format read by tribolab, whose errors are specific."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     named = is_surfer(head) or is_zygo_xyz(head)
@@ -35,7 +35,7 @@ def is_own_text(path: Path) -> bool:
 
 
 def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
-    """Read a scan in one of our own formats, or else with SurfaceTopography.
+    """Read a scan in a format of tribolab, or else with SurfaceTopography.
 
     Parameters
     ----------
@@ -52,14 +52,14 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     Raises
     ------
     ReadError
-        If it is of no format that is known, or damaged.
+        If its format is unknown, or it is damaged.
 
     Notes
     -----
-    Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
-    SMD and PRF text of soft gauges, packed Surf files, SDF of the
-    standard's draft, matrices of heights below lines that say their size or between positions
-    along two sides, and arrays by name.
+    tribolab reads formats that SurfaceTopography 1.27 supports in part or not at all: x3p and its
+    bare XML, SMD and PRF text of softgauges, compressed Surf files, SDF of the draft standard,
+    matrices of heights with their size in a header or with positions along two sides, and named
+    arrays.
     """
     try:
         return _read(path, x_unit, height_unit)
@@ -77,7 +77,7 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
     with path.open("rb") as file:
         head = file.read(_HEAD)
     if holds_arrays(path, head):
-        return _of_arrays(path, x_unit, height_unit)
+        return _read_arrays(path, x_unit, height_unit)
     inside = as_standard(path) if is_sdf_draft(head) else unpacked(path, head)
     if inside != path:
         try:
@@ -100,12 +100,12 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
     if is_gauge(head):
         return read_gauge(path)
     if b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return _of_text(path, x_unit, height_unit)
+        return _read_text(path, x_unit, height_unit)
     return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)
 
 
-def _of_arrays(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
-    """Read arrays by their names, else what SurfaceTopography makes of them."""
+def _read_arrays(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read named arrays, else use SurfaceTopography."""
     scan = read_scan_arrays(path, x_unit, height_unit)
     if scan is None and is_npz(path):
         raise ReadError(
@@ -115,15 +115,15 @@ def _of_arrays(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Da
     return read_foreign(path, x_unit, height_unit) if scan is None else scan
 
 
-def _of_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
-    """Read a matrix whose lines above say all, else what SurfaceTopography reads."""
+def _read_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read a text map with our own readers, else use SurfaceTopography."""
     try:
         scan = read_matrix(path, x_unit, height_unit)
     except NotSaidError as lacking:
         try:
             return read_foreign(path, x_unit, height_unit)
         except NotSaidError as error:
-            if x_unit is None:  # what is lacking is said of our own reading
+            if x_unit is None:  # the error is that of our own reader
                 raise lacking from error
             raise
         except ReadError as error:

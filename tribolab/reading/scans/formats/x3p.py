@@ -1,7 +1,7 @@
-"""Surface data after ISO 25178-72: x3p archives and the bare XML of soft gauges.
+"""Surface data of ISO 25178-72: x3p archives and the bare XML of softgauges.
 
-Read here and not by SurfaceTopography (1.27), which wants ``main.xml`` at the top of the archive,
-an areal feature with even axes, one revision, and the heights in a binary member.
+They are not read by SurfaceTopography (1.27), which requires ``main.xml`` at the archive's top,
+an areal feature with even axes, one revision, and heights in a binary member.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from tribolab.reading.scans.grid import even, gridded
 _MAIN = "main.xml"
 _ROOT = b"ISO5436_2"
 _TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
-_MOST = 1 << 31  # points
+_MOST = 1 << 31  # most points
 _NOT_SAID = {"", "unknown", "not available", "n/a", "none"}
 _FIELDS = {
     "recorded_at": "Record2/Date",
@@ -39,7 +39,7 @@ _FIELDS = {
 
 
 class _Axis(NamedTuple):
-    """One axis: even steps or a number for each point, and what makes metres of its numbers."""
+    """Axis with even steps or a number for each point, and their conversion to metres."""
 
     name: str
     even: bool
@@ -53,9 +53,9 @@ class _Axis(NamedTuple):
 
 
 def main_of(path: Path) -> str | None:
-    """Name of the member of an x3p archive that describes it; None if the file is none.
+    """Return the name of the main XML member of an x3p archive; None for other files.
 
-    It may lie in a folder of the archive, as it does where a folder was packed by hand.
+    It may be in a folder of the archive, e.g. if a folder was zipped by hand.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -66,7 +66,7 @@ def main_of(path: Path) -> str | None:
 
 
 def is_iso_xml(head: bytes) -> bool:
-    """Whether a file's first bytes are those of the bare XML."""
+    """Whether a file begins like the bare XML."""
     return head.lstrip(b"\xef\xbb\xbf \r\n\t").startswith(b"<") and _ROOT in head[:4096]
 
 
@@ -84,13 +84,13 @@ def read_x3p(path: Path, main: str) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``height`` [m] (y, x) or (x), NaN where a point is not valid, with what the file says of
-        the instrument as attributes.
+        ``height`` [m] (y, x) or (x), NaN for invalid points, with information on the instrument as
+        attributes.
 
     Raises
     ------
     ReadError
-        If the archive is damaged, or holds what is no profile and no map.
+        If the archive is damaged, or contains neither a profile nor a map.
 
     References
     ----------
@@ -114,7 +114,7 @@ def read_x3p(path: Path, main: str) -> xr.Dataset:
 
 
 def read_iso_xml(path: Path) -> xr.Dataset:
-    """Read the bare XML, whose heights stand in it as a list.
+    """Read the bare XML with a list of heights.
 
     Raises
     ------
@@ -199,7 +199,7 @@ def _step(path: Path, axis: _Axis) -> float:
 
 
 def _shape(path: Path, root: ElementTree.Element) -> tuple[int, int]:
-    """Points along x and y; of a profile all along x."""
+    """Return the numbers of points along x and y; all points of a profile are along x."""
     if root.find("Record3/MatrixDimension") is not None:
         sizes = [
             int(_number(path, root, f"Record3/MatrixDimension/Size{axis}", 1)) for axis in "XYZ"
@@ -223,10 +223,10 @@ def _columns(
     shape: tuple[int, int],
     member: Callable[[str], bytes],
 ) -> dict[str, np.ndarray]:
-    """Heights, and positions that are not even [m]: one number a point, x running fastest."""
+    """Return heights and uneven positions [m], one number per point, with x running fastest."""
     number = shape[0] * shape[1]
     given = [axis for axis in axes.values() if not axis.even]
-    if shape[1] == 1:  # a profile's y is nowhere
+    if shape[1] == 1:  # the y of a profile is ignored
         given = [axis for axis in given if axis.name != "CY"]
     link = _text(root, "Record3/DataLink/PointDataLink")
     listed = root.find("Record3/DataList")
@@ -246,7 +246,7 @@ def _columns(
         raise ReadError(f"{path}: the file contains no heights, neither as a list nor as a member")
     valid = _text(root, "Record3/DataLink/ValidPointsLink")
     if valid:
-        with contextlib.suppress(KeyError):  # named, but not there: every point is valid
+        with contextlib.suppress(KeyError):  # the mask is missing: every point is valid
             columns["CZ"][~_valid(member(valid), number)] = np.nan
     return columns
 
@@ -254,7 +254,7 @@ def _columns(
 def _listed(
     path: Path, listed: ElementTree.Element, given: list[_Axis], number: int
 ) -> dict[str, np.ndarray]:
-    """Numbers of a list: of each point those of its axes that are not even; none if not valid."""
+    """Return heights and uneven positions from a list; NaN for invalid points."""
     cells = [(datum.text or "").replace(",", ";").split(";") for datum in listed.iter("Datum")]
     if len(cells) != number:
         raise ReadError(
@@ -262,7 +262,7 @@ def _listed(
             "file whole?"
         )
     columns = {axis.name: np.full(number, np.nan) for axis in given}
-    for place, axis in enumerate(reversed(given), start=1):  # the height stands last
+    for place, axis in enumerate(reversed(given), start=1):  # the height is the last cell
         try:
             values = [
                 float(row[-place]) if len(row) >= place and row[-place].strip() else np.nan
@@ -275,7 +275,7 @@ def _listed(
 
 
 def _valid(mask: bytes, number: int) -> np.ndarray:
-    """Which points are valid: a bit for each, the lowest first, or, of some makers, a byte."""
+    """Return a mask of valid points from bits, lowest first, or from bytes as some makers write."""
     values = np.frombuffer(mask, np.uint8)
     if values.size >= number > 8:
         return values[:number] != 0

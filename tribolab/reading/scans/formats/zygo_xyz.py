@@ -1,7 +1,4 @@
-"""Maps that Zygo's MetroPro writes as text: pixels and heights, "No Data" where there is none.
-
-The layout is that of the MetroPro Reference Guide, "XYZ data file".
-"""
+"""Text maps of Zygo's MetroPro: pixels and heights, "No Data" for missing ones."""
 
 from __future__ import annotations
 
@@ -17,13 +14,13 @@ from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.units.conversion import conversion
 
 _BEGIN = b"Zygo XYZ Data File"
-_HEIGHT = 1e-6  # m, of a number in the file
+_HEIGHT = 1e-6  # m per unit in the file
 _SIZES, _LENGTHS = 3, 7  # lines, from 0
 _RESOLUTION = 6  # place of the camera's resolution [m] in its line
 
 
 def is_zygo_xyz(head: bytes) -> bool:
-    """Whether a file's first bytes are those of such a map."""
+    """Whether a file begins like such a map."""
     return head.startswith(_BEGIN)
 
 
@@ -35,7 +32,7 @@ def read_zygo_xyz(path: Path, x_unit: str | None = None) -> xr.Dataset:
     path
         The file.
     x_unit
-        What a pixel is, where the camera was not calibrated: ``"1.5 um"``.
+        Size of a pixel, if the camera was not calibrated: ``"1.5 um"``.
 
     Returns
     -------
@@ -45,7 +42,7 @@ def read_zygo_xyz(path: Path, x_unit: str | None = None) -> xr.Dataset:
     Raises
     ------
     NotSaidError
-        If it does not say how large a pixel is.
+        If the size of a pixel is not stated.
     ReadError
         If it is damaged.
     """
