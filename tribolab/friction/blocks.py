@@ -30,12 +30,12 @@ def error_from_blocks(
     xarray.Dataset
         On dim ``block_length`` [samples]: ``standard_error`` [unit of the signal], its own standard
         error ``standard_error_std`` and the number of ``blocks``. Once a block is longer than the
-        signal's memory, the standard error depends on the length no more.
+        signal's memory, the standard error no longer depends on the length.
 
     Raises
     ------
     AnalysisError
-        If the record does not hold two blocks of each length.
+        If the record is shorter than two blocks of each length.
 
     Notes
     -----

@@ -23,11 +23,11 @@ def grouped(
     Parameters
     ----------
     runs
-        What is known of each run.
+        Results, one for each run.
     labels
-        What tells the runs apart, one label for each.
+        Labels that distinguish the runs, by name, one for each run.
     function
-        Who asks, for the message.
+        Name of the calling function, for the message.
 
     Raises
     ------
@@ -52,16 +52,16 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
     Parameters
     ----------
     curves
-        Each curve (sliding_speed) with what tells it from the others, the same dims for all:
-        names such as ``surface`` and ``medium``, or numbers in SI such as ``normal_force`` [N];
-        numbers of other names stay as they are, without a unit.
+        Each curve (sliding_speed) with the labels that distinguish it, the same dims for all: names
+        such as ``surface`` and ``medium``, or numbers in SI such as ``normal_force`` [N]; numbers
+        of other names stay as they are, without a unit.
 
     Returns
     -------
     xarray.Dataset
-        Everything over these dims and sliding_speed; NaN where nothing was measured, of texts "".
-        Names keep their order, numbers ascend. Speeds that differ by no more than a tenth stand
-        together at their geometric mean; ``measured_speed`` is each curve's own.
+        All variables over these dims and sliding_speed; NaN (text: "") if nothing was measured.
+        Names keep their order, numbers ascend. Speeds that differ by no more than a tenth are
+        combined at their geometric mean; ``measured_speed`` is the speed of each curve.
 
     Examples
     --------
@@ -101,12 +101,12 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
 
 
 def _is_foreign(dim: str, axis: np.ndarray) -> bool:
-    """Whether numbers are of a kind that we have no unit for: a person's own labels."""
+    """Return whether an axis has numeric labels of a user's own, without a known unit."""
     return axis.dtype != object and dim not in QUANTITIES
 
 
 def _axis(labels: Sequence[Label]) -> np.ndarray:
-    """Names in their order, or numbers in theirs, each once; what is not known is the last."""
+    """Return the distinct labels: names in order of appearance, or ascending numbers, NaN last."""
     if any(isinstance(label, str) for label in labels):
         return np.array(list(dict.fromkeys(labels)), dtype=object)
     return np.unique(np.array(labels, dtype=float))
@@ -120,7 +120,7 @@ def _place(axis: np.ndarray, label: Label) -> int:
 
 
 def _common_speeds(given: Sequence[np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Speeds of all curves [m/s], and the places of each curve's among them."""
+    """Return the common speeds of all curves [m/s], and the index of each curve's speeds."""
     owner = np.repeat(np.arange(len(given)), [speeds.size for speeds in given])
     every = np.concatenate([*given, np.zeros(0)])
     place = np.zeros(every.size, dtype=int)
@@ -128,7 +128,7 @@ def _common_speeds(given: Sequence[np.ndarray]) -> tuple[np.ndarray, list[np.nda
     groups: list[list[int]] = []
     for index in np.argsort(every, kind="stable"):
         near = group and np.log(every[index] / every[group[-1]]) <= np.log1p(SPEED_TOLERANCE.value)
-        if not near or owner[index] in owner[group]:  # a curve's own speeds stay apart
+        if not near or owner[index] in owner[group]:  # speeds of one curve stay separate
             group = []
             groups.append(group)
         group.append(int(index))

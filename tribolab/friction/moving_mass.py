@@ -15,8 +15,8 @@ from tribolab.friction.segments.strokes import find_strokes
 from tribolab.reading.runs.inertia import acceleration, take_inertia
 from tribolab.units.conversion import positive
 
-_MAX_CONDITION = 1e6  # condition beyond which a pair does not tell the terms apart
-_MAX_SAMPLES = 1 << 20  # samples: a mass does not change within a run
+_MAX_CONDITION = 1e6  # condition number above which a pair of strokes does not separate the terms
+_MAX_SAMPLES = 1 << 20  # most samples used: the mass is constant within a run
 
 
 class MovingMass(NamedTuple):
@@ -33,25 +33,25 @@ def moving_mass(run: xr.Dataset) -> MovingMass | None:
     Parameters
     ----------
     run
-        With ``friction_force`` and ``position`` or a signed ``sliding_velocity``, of a contact that
-        is driven to and fro with a speed that changes all the time, as by a crank.
+        With ``friction_force`` and ``position`` or a signed ``sliding_velocity``, of a
+        reciprocating contact whose speed changes continuously, as with a crank.
 
     Returns
     -------
     MovingMass or None
-        None of strokes at constant speed, of fewer than 4 pairs of strokes, where the acceleration
-        is mostly noise, or where the mass is less than 5 standard errors or its force less than 2 %
-        of the friction.
+        None for strokes at constant speed, for fewer than 4 pairs of strokes, if the acceleration
+        is mostly noise, or if the mass is below 5 standard errors or its force below 2 % of the
+        friction.
 
     Notes
     -----
-    At one place of the stroke friction points one way in the forward stroke and the other way in
-    the backward one, while the acceleration is the same. In each pair of strokes the force is
-    fitted by a constant, by friction that changes sign with the direction and with the speed, and
-    by m a; where friction still turns over (below 40 % of the highest speed) nothing is fitted.
-    The error is that of the mean over the pairs. A spring beside the contact, and friction that
-    lags behind the speed, have the same sign as a mass: what is found is the force in phase with
-    the acceleration, which does no work over a cycle, whatever makes it.
+    At a given position friction has opposite signs in the forward and the backward stroke, while
+    the acceleration is the same. In each pair of strokes the force is fitted by a constant, by
+    friction that changes sign with the direction and with the speed, and by m a; samples during the
+    reversal of friction (below 40 % of the highest speed) are not used. The error is that of the
+    mean over the pairs. A spring parallel to the contact, or friction that lags the speed, has the
+    same sign as a mass: the result is the force in phase with the acceleration, which does no work
+    over a cycle, whatever its cause.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def moving_mass(run: xr.Dataset) -> MovingMass | None:
         return None
     time, force = run["time"].values, run["friction_force"].values
     signals = {n: run[n].values for n in ("sliding_velocity", "position") if n in run}
-    # a parabola through a sixth of a stroke loses a hundredth of a sine's acceleration
+    # a parabola through a sixth of a stroke underestimates a sine's acceleration by 1 %
     widest = max(int(median(np.diff(strokes.first)) / 12), 2)
     known = acceleration(signals, time, 0.0, widest)
     if known is None:
@@ -119,21 +119,21 @@ def without_inertia(run: xr.Dataset, mass: str | float | None = None) -> xr.Data
     run
         With ``friction_force`` and ``position`` or ``sliding_velocity``.
     mass
-        Between contact and sensor ("1.2 kg", or a number in kg); else as `moving_mass` finds it.
+        Mass between contact and sensor ("1.2 kg", or a number in kg); default: from `moving_mass`.
 
     Returns
     -------
     xarray.Dataset
-        The run with ``inertial_force`` [N] (time) and without it in ``friction_force``; attributes
-        ``moving_mass_kg``, ``moving_mass_source`` and, where it was found, ``moving_mass_sem_kg``.
-        The run as it is where no mass is stated and the data do not tell one.
+        The run with ``inertial_force`` [N] (time) subtracted from ``friction_force``; attributes
+        ``moving_mass_kg``, ``moving_mass_source`` and, if it was found, ``moving_mass_sem_kg``. The
+        run is unchanged if no mass is stated or found.
 
     Raises
     ------
     ReadError
         If a mass is stated and the run has no friction force, or no motion.
     AnalysisError
-        If its inertia was taken out before.
+        If the inertia was already removed.
 
     Examples
     --------
@@ -162,17 +162,17 @@ def without_inertia(run: xr.Dataset, mass: str | float | None = None) -> xr.Data
 
 
 def _is_steady(acceleration: np.ndarray) -> bool:
-    """Whether a stroke is mostly at constant speed, so that ramps alone are accelerated.
+    """Return whether a stroke is mostly at constant speed, so that only ramps are accelerated.
 
-    In those friction builds up and relaxes, which no symmetry tells from inertia. Of a sine's
-    acceleration the median size is half of the highest or more, of ramps' it is far less.
+    In ramps friction builds up and relaxes, which symmetry cannot separate from inertia. The median
+    magnitude of a sine's acceleration is at least half of its maximum; for ramps it is far less.
     """
     size = np.abs(acceleration)
     return bool(median(size) < limits.MAX_EVEN_ACCELERATION.value * np.quantile(size, 0.98))
 
 
 def _fits(pair: np.ndarray, terms: list[np.ndarray], force: np.ndarray) -> np.ndarray:
-    """Coefficients of the terms in the force by least squares, in each pair (pair, term)."""
+    """Return least-squares coefficients of the terms in the force, for each pair (pair, term)."""
     count = int(pair.max()) + 1
     size = np.bincount(pair, minlength=count)
     normal = np.array(

@@ -51,7 +51,7 @@ def friction_coefficient(
     rectified: bool | None = None,
     other_zeros: Sequence[float] = (),
 ) -> xr.Dataset:
-    """Friction coefficient of each segment: mean of the pointwise ratio F_x / F_N.
+    """Return the friction coefficient of each segment: mean of the pointwise ratio F_x / F_N.
 
     Parameters
     ----------
@@ -59,9 +59,9 @@ def friction_coefficient(
         The run, with ``friction_force`` and ``normal_force``, or ``friction_coefficient``, or
         ``friction_force`` alone (which gives forces only).
     segments
-        From `find_segments` on the same run, or from `decide`: rejected segments do not affect
-        the others, and have the values they would have if accepted. A further dim (of several
-        trims) is one of the result.
+        From `find_segments` on the same run, or from `decide`: rejected segments do not affect the
+        others, and have the values they would have if accepted. A further dim (of several trims)
+        becomes a dim of the result.
     offset
         ``"half loop"``: the middle of the loop of two neighbouring strokes of opposite direction,
         corrected for drift between loops. ``"zero load"``: the reading of unloaded rests,
@@ -87,45 +87,42 @@ def friction_coefficient(
     xarray.Dataset
         The variables of `segments` and, on dim ``segment``: ``friction_coefficient`` (signed by
         direction, so that ordinary friction is positive), ``_std`` (sample standard deviation of
-        the pointwise ratio, the error bar of [1]_), ``_sem``, ``_dof`` and ``_U95`` (95 %
-        coverage, t_0.975(dof) sem) of this mean over the path,
-        ``friction_coefficient_beyond_sem``, ``_dof`` and ``_U95`` of the same number as an estimate
-        for the surface beyond the path (a course along the path may go on),
-        ``friction_coefficient_shared_sem`` (the part of these errors that all segments share:
-        zero and reading of the load, tilt, drag),
+        the pointwise ratio, the error bar of [1]_), ``_sem``, ``_dof`` and ``_U95`` (95 % coverage,
+        t_0.975(dof) sem) of this mean over the path, ``friction_coefficient_beyond_sem``, ``_dof``
+        and ``_U95`` of the same number as an estimate for the surface beyond the path (a course
+        along the path may go on), ``friction_coefficient_shared_sem`` (the part of these errors
+        that all segments share: zero and reading of the load, tilt, drag),
         ``friction_coefficient_level`` (without the unfinished period of an oscillation),
         ``effective_samples``, ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``,
         ``trend_p_value``, ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``,
-        ``normal_force`` [N] (+
-        ``_std``, ``_sem``), ``friction_force_offset``, ``normal_force_offset`` [N], ``pair``,
-        ``half_loop`` [N], ``tilt_found`` [rad] (from both directions; where no rest without load
-        shows the zero, with what the zero would be of it), ``zero_from`` (text: what the zero
-        rests on) and ``remark`` (text: why a value is missing or special). Attributes ``offset``,
-        ``middle_of_loop`` (what the middle of the loops was taken for) and ``zero_doubts``: what
-        is not sure of the zero.
+        ``normal_force`` [N] (+ ``_std``, ``_sem``), ``friction_force_offset``,
+        ``normal_force_offset`` [N], ``pair``, ``half_loop`` [N], ``tilt_found`` [rad] (from both
+        directions; without an unloaded rest, the tilt that would explain the zero), ``zero_from``
+        (text: the source of the zero) and ``remark`` (text: why a value is missing or special).
+        Attributes ``offset``, ``middle_of_loop`` (interpretation of the middle of the loops) and
+        ``zero_doubts`` (doubts about the zero).
 
     Raises
     ------
     AnalysisError
-        If the run has no friction, the segments are another run's, or the offset asked for cannot
-        be had.
+        If the run has no friction, the segments are another run's, or the requested offset cannot
+        be determined.
 
     Notes
     -----
-    With F_f = mu N_f + Z(t_f) and F_b = -mu N_b + Z(t_b) the mean forces of a pair and N_f, N_b
-    its mean normal forces, (F_f N_b + F_b N_f)/(N_f + N_b) is the zero Z between the strokes (the
-    half sum where the load is the same or unknown), and its drift to both strokes is that
-    from loop to loop (`tribolab.friction.zero.middles`). A cell that is tilted moves the middle as
-    a zero does, but in proportion to the load: rests without load, or what is stated of both in the
-    run's attribute ``uncertainty``, tell the two apart, and mu = tan((atan f + atan b)/2) of the
-    ratios f and b of both directions is without either [2]_ (`reversal_of`). Both strokes then
-    have the same coefficient, and they are one observation, not two. Each keeps the standard
-    deviation and the trend of its own stroke. Their error holds the errors of all strokes that it
-    rests on, how the zero moves from loop to loop beyond those and a common drift, and, for strokes
-    of unequal speed, what friction may change between the speeds
-    (`tribolab.friction.zero.unequal`).
-    With another zero the error is sqrt(sem^2 + (sem(Z)/F_N)^2). The zero of the normal force adds
-    mu sem(F_N0)/F_N. A signal without sign has the direction of sliding put back as its sign.
+    With F_f = mu N_f + Z(t_f) and F_b = -mu N_b + Z(t_b) the mean forces of a pair and N_f, N_b its
+    mean normal forces, (F_f N_b + F_b N_f)/(N_f + N_b) is the zero Z between the strokes (the half
+    sum if the load is the same or unknown), corrected for its drift from loop to loop
+    (`tribolab.friction.zero.middles`). A tilted force cell shifts the middle like a zero, but in
+    proportion to the load: unloaded rests, or the uncertainties of both in the run's attribute
+    ``uncertainty``, separate the two, and mu = tan((atan f + atan b)/2) of the ratios f and b of
+    both directions is free of both [2]_ (`reversal_of`). Both strokes then have the same
+    coefficient, and they are one observation, not two. Each keeps the standard deviation and the
+    trend of its own stroke. Their error includes the errors of all strokes used, the scatter of the
+    zero from loop to loop beyond those and a common drift, and, for strokes of unequal speed, the
+    change of friction between the speeds (`tribolab.friction.zero.unequal`). With another zero the
+    error is sqrt(sem^2 + (sem(Z)/F_N)^2). The zero of the normal force adds mu sem(F_N0)/F_N. A
+    signal without sign has the direction of sliding put back as its sign.
 
     References
     ----------
@@ -157,7 +154,7 @@ def friction_coefficient(
 
 
 def friction_signal(run: xr.Dataset) -> str:
-    """Name of the friction signal: a force, or a recorded coefficient; or "".
+    """Return the name of the friction signal: a force, or a recorded coefficient; or "".
 
     A recorded coefficient is preferred to a force under an unknown load.
 
@@ -189,7 +186,7 @@ def _name(run: xr.Dataset) -> str:
 
 
 def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
-    """Raise an error if these are no segments, or those of another run."""
+    """Raise an error if `segments` is not a result of `find_segments` on this run."""
     if "segment" not in getattr(segments, "sizes", ()):
         raise AnalysisError(
             f"a {type(segments).__name__} without segments was given as segments",
@@ -224,7 +221,7 @@ def trimmed_slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
 
 
 def _middles(time: np.ndarray, parts: list[slice], segments: xr.Dataset) -> np.ndarray:
-    """Mean time of the samples of each segment, when a drifting signal equals its mean."""
+    """Return the mean time of each segment's samples: a drifting signal equals its mean there."""
     ends = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     means = [
         time[s].mean() if s.stop > s.start else end
@@ -389,7 +386,7 @@ class _Turning(NamedTuple):
 
 
 class _Pointwise(NamedTuple):
-    """Remarks on the ratio of one segment: why it is missing, and samples left out."""
+    """Remarks on the ratio of one segment: why it is missing, and number of omitted samples."""
 
     missing: str = ""
     left: int = 0

@@ -19,7 +19,7 @@ from tribolab.units.stamping import stamp
 
 @of_runs
 def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset:
-    """Friction coefficient of each cycle of a reciprocating contact.
+    """Return the friction coefficient of each cycle of a reciprocating contact.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _pairs(strokes: Strokes) -> tuple[np.ndarray, np.ndarray]:
 def _means(
     run: xr.Dataset, strokes: Strokes, share: float
 ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """Mean of each signal over the middle part of each stroke, and the number of samples."""
+    """Return the mean of each signal over the middle part of each stroke, and its sample count."""
     inside = np.abs(strokes.place - 0.5) <= share / 2
     number = strokes.number[inside]
     size = strokes.way.size
@@ -183,7 +183,7 @@ def _coefficient(
     forward: np.ndarray,
     backward: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Friction coefficient of each cycle, and the zero of the signal."""
+    """Return the friction coefficient of each cycle, and the zero of the signal."""
     there, back = force[forward], force[backward]
     lost = bool(run.attrs.get(f"{name}_rectified", False))
     if not lost and np.mean(there * back > 0) > limits.MAX_CYCLES_OF_ONE_SIGN.value:
@@ -219,7 +219,7 @@ def _energy(
     last: np.ndarray,
     data: dict[str, np.ndarray],
 ) -> np.ndarray:
-    """Energy friction coefficient: area of each cycle's loop over twice the stroke and the load."""
+    """Return each cycle's energy friction coefficient: loop area over twice the stroke and load."""
     force = np.nan_to_num(np.asarray(run["friction_force"].values, float))
     if run.attrs.get("friction_force_rectified", False):
         return np.full(first.size, np.nan)

@@ -9,7 +9,7 @@ from tribolab.units.stamping import stamp
 
 
 def half_loops(friction: xr.Dataset) -> xr.Dataset:
-    """Table of the pairs of strokes, one row for each half loop.
+    """Return a table of the pairs of strokes, one row for each half loop.
 
     Parameters
     ----------

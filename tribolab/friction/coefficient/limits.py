@@ -1,4 +1,4 @@
-"""Numbers that decide the friction coefficient of a segment, its static friction and its trend."""
+"""Limits for the friction coefficient of a segment, its static friction and its trend."""
 
 from tribolab.core.limit import Count, Limit
 

@@ -1,4 +1,4 @@
-"""Height of a peak in noisy readings: from a parabola if it is round, else the maximum."""
+"""Height of a peak in noisy readings: by a parabola if the peak is round, else the maximum."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 from tribolab.arrays.medians import median
 from tribolab.friction.coefficient import limits
 
-_NOISE_OF_STEPS = 1.4826 / np.sqrt(2)  # median of the steps between samples -> standard deviation
-# readings above this share of the rise belong to the peak; fewer for a pointed one
+_NOISE_OF_STEPS = 1.4826 / np.sqrt(2)  # from median step to standard deviation
+# readings above this share of the rise are fitted; fewer for a pointed peak
 _PEAK_SHARES = (0.8, 0.9, 0.95, 0.98)
 
 
@@ -42,7 +42,7 @@ def noise_between(values: np.ndarray) -> float:
 def peak_of_start(
     time: np.ndarray, ratio: np.ndarray, sliding: float, sem: float, noise: float
 ) -> Peak:
-    """Height of the peak at the start of sliding.
+    """Return the peak at the start of sliding.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def _smooth(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray
 def _parabola(
     time: np.ndarray, values: np.ndarray, noise: float
 ) -> tuple[float, float, float, float]:
-    """Time and height of a parabola's maximum within its readings, its error, and the scatter."""
+    """Return time, height and error of a parabola's maximum within its readings, and scatter."""
     middle, half = (time[0] + time[-1]) / 2, (time[-1] - time[0]) / 2
     u = (time - middle) / half
     basis = np.stack([np.ones(u.size), u, u * u], axis=1)

@@ -14,7 +14,7 @@ from tribolab.friction.stribeck import measured_stribeck_curve
 def run_levels(
     frictions: Sequence[xr.Dataset], speed_tolerance: float = SPEED_TOLERANCE.value
 ) -> np.ndarray:
-    """Friction of each run relative to the mean of all repeats, over all speeds.
+    """Return the friction of each run relative to the mean of all repeats, over all speeds.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def run_levels(
         whole = together["friction_coefficient"].values[place]
         mu, sem = (own[f"friction_coefficient{end}"].values for end in ("", "_sem"))
         known = np.isfinite(sem) & (sem > 0)
-        if not known.any():  # rows that are results, without an error of their own
+        if not known.any():  # rows that are results, without their own error
             known, sem = np.ones(mu.size, bool), mu
         fine = (mu > 0) & (whole > 0) & known
         weight = (mu[fine] / sem[fine]) ** 2
@@ -55,7 +55,7 @@ def run_levels(
 
 
 def pooled_repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:
-    """Relative standard deviation of the friction level of a run, pooled over conditions.
+    """Return the relative standard deviation of a run's friction level, pooled over conditions.
 
     Parameters
     ----------

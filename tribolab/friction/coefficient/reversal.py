@@ -98,25 +98,25 @@ def reversal_of(
     Parameters
     ----------
     zero
-        What the zero rests on; nothing is told apart but with the half loop.
+        Source of the zero; tilt and zero are separated only for the half loop.
     pair, load, time, ratio
-        Of each segment: number of its pair, mean normal force, middle [s], and its friction over
-        the load, whatever its sign.
+        Number of the pair, mean normal force, mean time [s], and friction over load, of either sign
+        (segment).
     rests
-        Zeros from rests without load, where a tilt shows nothing.
+        Zeros from rests without load, which a tilt does not affect.
     stated
-        What is stated of the calibration, by name: standard uncertainties of ``tilt`` [rad] and
-        ``friction_zero`` [N].
+        Stated calibration, by name: standard uncertainties of ``tilt`` [rad] and ``friction_zero``
+        [N].
 
     Notes
     -----
-    A zero and a tilt move the middle of a loop alike where the load is the same. What a load that
-    changed by a share d between the strokes leaves is tilt d/2 if the middle is taken for a zero,
-    and zero/load d/2 if it is taken for a tilt. Rests without load tell the two apart, if they lie
-    before and after the strokes or the loads differ, and if the angle is plausible and does not
-    change with time: else the zero has drifted since the rest. Without rests the middle is shared
-    between the two as their stated variances are, (load tilt)^2 and zero^2: all of it is a tilt
-    where no zero is stated, and a zero where no tilt is.
+    At equal loads a zero and a tilt shift the middle of a loop alike. If the load changes by a
+    share d between the strokes, a tilt mistaken for a zero leaves an error tilt d/2, and a zero
+    mistaken for a tilt leaves zero/load d/2. Unloaded rests separate the two, if they were recorded
+    before and after the strokes or the loads differ, and if the angle is plausible and constant in
+    time: else the zero has drifted since the rest. Without rests the middle is divided in
+    proportion to the stated variances, (load tilt)^2 and zero^2: with only one of them stated, all
+    of it is attributed to that one.
     """
     members = np.where((pair >= 0) & np.isfinite(zero.half_loop), pair, -1)
     nothing = np.zeros(pair.size)
@@ -144,7 +144,7 @@ def _is_tilt(
     ratio: np.ndarray,
     rests: Zeros,
 ) -> bool:
-    """Whether the difference between middles and rests is a tilt and not a drifting zero."""
+    """Return whether the difference between middles and rests is a tilt, not a drifting zero."""
     paired = (members >= 0) & np.isfinite(apart) & (load > 0)
     if not paired.any():
         return False
@@ -152,8 +152,8 @@ def _is_tilt(
     several = load[paired].max() > limits.LOADS_DIFFER.value * load[paired].min()
     if not (between or several):
         return False
-    # a cell tilted by an angle t moves the middle by t times the load; by t (1 + mu^2) times if
-    # the strokes are weighted by loads measured with the tilt
+    # a cell tilted by an angle t shifts the middle by t times the load, or by t (1 + mu^2) times
+    # the load if the strokes are weighted by loads measured with the tilt
     ways = (np.zeros(ratio.size), ratio**2)
     felt = [_pair_means(load, members) * (1 + _pair_means(way, members)) for way in ways]
     at = _pair_means(time, members)[paired]
@@ -161,7 +161,7 @@ def _is_tilt(
 
 
 def _is_an_angle(angle: np.ndarray, time: np.ndarray) -> bool:
-    """Whether the angles of the pairs are plausible and constant in time."""
+    """Return whether the angles of the pairs are plausible and constant in time."""
     mean, moment = float(np.mean(angle)), time - time.mean()
     slope = float(moment @ angle) / max(float(moment @ moment), 1e-300)
     steady = abs(slope) * float(np.ptp(time)) <= limits.TILT_CHANGES.value * abs(mean)

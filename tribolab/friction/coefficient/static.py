@@ -26,7 +26,7 @@ from tribolab.friction.segments.stretches import name_of
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
-_EXTENSION = 1.5  # the search is extended by this factor while the force still rises
+_EXTENSION = 1.5  # the search is extended by this factor if the force still rises
 _END_SHARE = 0.1  # share of the readings; if their mean is the highest, the force still rises
 
 
@@ -71,11 +71,10 @@ def static_friction(
         On dim ``start_of_sliding`` (one for each segment after a rest; its number is the
         coordinate): ``static_friction_coefficient`` with ``_sem``; ``breakaway_force`` [N] with
         ``_sem`` (where forces are known); ``friction_coefficient`` of the sliding that follows;
-        ``static_excess`` (static over sliding, minus 1); ``peak`` (1 if the peak is significant,
-        0 if not: then the static coefficient is only the highest value of the
-        start), ``breakaway_time`` [s], ``waiting_time`` (rest under load before; NaN
-        where a record, or a specimen's, begins with the motion) [s], ``direction``,
-        ``sliding_speed`` [m/s].
+        ``static_excess`` (static over sliding, minus 1); ``peak`` (1 if the peak is significant, 0
+        if not: then the static coefficient is only the highest value of the start),
+        ``breakaway_time`` [s], ``waiting_time`` (rest under load before; NaN if the record, or that
+        of the specimen, begins with the motion) [s], ``direction``, ``sliding_speed`` [m/s].
 
     Raises
     ------
@@ -182,7 +181,7 @@ def _starts(
         before = np.flatnonzero(end <= start[i] + 1e-9)
         earliest = stop[i - 1] if i else time[0]
         if not before.size or end[before[-1]] < earliest:
-            continue  # it was already moving
+            continue  # already moving
         rest = before[-1]
         limit, latest = trimmed[i], start[i] + limits.MAX_TIME_OF_RISE.value * (stop[i] - start[i])
         if reach is not None and speed[i] > 0:
@@ -199,7 +198,7 @@ def _starts(
 
 
 def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
-    """Whether a segment begins a record or specimen, and still without friction."""
+    """Return whether a segment begins a record or specimen, and still without friction."""
     signal = friction_signal(run)
     time, values = run.variables["time"].values, run.variables[signal].values
     begins = np.append(time[:1], begins_of_specimens(run))

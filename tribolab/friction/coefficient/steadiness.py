@@ -30,7 +30,7 @@ STEADINESS_WORDS = {IS_NOT_STEADY: "not steady", IS_STEADY: "steady", NOT_DECIDE
 
 
 def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = LIMITS) -> np.ndarray:
-    """Return p value below which a line through a segment is a trend (segment).
+    """Return the p value below which a line through a segment is a trend (segment).
 
     Above 20 segments the p value must decrease with the square of their number: in a hundred
     strokes one is below 0.01 by chance, and with Bonferroni's proportional correction every fifth
@@ -91,7 +91,7 @@ def undecided(
 
 
 def relative_change(friction: xr.Dataset) -> np.ndarray | None:
-    """Change of friction along the trend of each segment, relative to typical friction [1].
+    """Return the change of friction along each segment's trend, relative to typical friction [1].
 
     It is relative to the run's friction, because that of a fast segment in a liquid can be almost
     zero.

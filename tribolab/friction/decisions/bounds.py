@@ -117,7 +117,7 @@ def _update_omitted(
 
 
 def _outside(piece: tuple[float, float], taken: tuple[float, float]) -> list[tuple[float, float]]:
-    """Parts of a time interval before and after another.
+    """Return the parts of a time interval before and after another.
 
     Examples
     --------

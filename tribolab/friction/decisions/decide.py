@@ -46,8 +46,8 @@ def decide(
     Raises
     ------
     AnalysisError
-        If a decision finds no segment, two contradict each other, or new bounds leave the run or
-        meet another segment.
+        If a decision finds no segment, two contradict each other, or new bounds are outside the run
+        or in another segment.
 
     Notes
     -----
@@ -57,8 +57,8 @@ def decide(
     trimming.
 
     `friction_coefficient` takes no zero from rejected segments, and `measured_stribeck_curve` and
-    `stick_slip_curve` leave them out. In a friction result a stroke cannot be rejected where
-    strokes tell the zero: the friction of the others rests on it.
+    `stick_slip_curve` leave them out. In a friction result a stroke cannot be rejected if the zero
+    is from strokes: the friction of the other strokes depends on it.
 
     Examples
     --------

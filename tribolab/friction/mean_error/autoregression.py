@@ -12,7 +12,7 @@ _MIN_VARIANCE = 1e-300
 
 
 class Models(NamedTuple):
-    """Coefficients (record, order + 1) beginning with 1, innovations' variance, order."""
+    """Coefficients (record, order + 1) beginning with 1, variance of the innovations, order."""
 
     coefficients: np.ndarray
     variance: np.ndarray
@@ -64,14 +64,14 @@ def _criterion(variances: np.ndarray, samples: int) -> np.ndarray:
 
 
 def spectra_of(records: np.ndarray, frequencies: np.ndarray, highest: int = 20) -> np.ndarray:
-    """Return model spectra of records, of the order that Akaike's criterion chooses.
+    """Return model spectra of records, of the order selected by Akaike's criterion.
 
     Parameters
     ----------
     records
         (record, sample); their means are removed here.
     frequencies
-        In cycles per record (frequency), or (record, frequency) where records differ.
+        In cycles per record (frequency), or (record, frequency) if records differ.
     highest
         Highest order.
 
@@ -101,7 +101,7 @@ def _power(
 
 
 class Sieve(NamedTuple):
-    """Models of the rest of a fit, corrected for the parameters that the fit took."""
+    """Models of the residuals of a fit, corrected for the number of fitted parameters."""
 
     models: Models
     long_run_variance: np.ndarray
@@ -113,16 +113,16 @@ class Sieve(NamedTuple):
 
 
 def sieve_of(records: np.ndarray, fitted: int, highest: int = 8) -> Sieve:
-    """Model the rest of a fit; the memory that the fit took out is put back (Kendall's bias).
+    """Model the residuals of a fit, corrected for the correlation that the fit removed (Kendall).
 
     Parameters
     ----------
     records
-        What a fit left, its mean removed (record, sample).
+        Residuals of a fit, their mean removed (record, sample).
     fitted
-        Parameters that were fitted to each, the mean among them.
+        Number of fitted parameters of each, including the mean.
     highest
-        Highest order; the lowest is 1, because order 0 hides a short memory.
+        Highest order; the lowest is 1, because order 0 hides a short correlation.
 
     References
     ----------

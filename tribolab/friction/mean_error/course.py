@@ -1,4 +1,4 @@
-"""Slow courses of records: a line, or an exponential approach as of a running-in."""
+"""Slow trends of records: a line, or an exponential approach as in running-in."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from scipy.fft import dct
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import sieve_of
 
-LINE = 0.0  # stands for a line among the times of exponentials
+LINE = 0.0  # denotes a line among the time constants of exponentials
 _COURSE_TIMES = np.concatenate([[LINE], np.geomspace(0.02, 1.0, 12)])  # of the record
 
 
 def shape_of(time: float, count: int) -> np.ndarray:
-    """Return a course over a record, its mean removed: a line, or an exponential (sample).
+    """Return a trend over a record, its mean removed: a line, or an exponential (sample).
 
     Parameters
     ----------
     time
-        `LINE`, or the time of the exponential as a share of the record.
+        `LINE`, or the time constant of the exponential as a share of the record.
     count
-        Samples.
+        Number of samples.
     """
     t = (np.arange(count) + 0.5) / count
     shape = t if time == LINE else np.exp(-t / time)
@@ -37,19 +37,19 @@ def _shapes(count: int) -> np.ndarray:
 
 
 class LineFit(NamedTuple):
-    """A line through each record: change from start to end, and the chance that it is none."""
+    """A line through each record: change from start to end, and its p value."""
 
     change: np.ndarray
     chance: np.ndarray
 
 
 def line_through(records: np.ndarray) -> LineFit:
-    """Fit a line to each record and test it against the memory of what it leaves.
+    """Fit a line to each record and test it against the correlated residuals.
 
     Parameters
     ----------
     records
-        Of one length, in any unit (record, sample).
+        Records of equal length, in any unit (record, sample).
     """
     count = records.shape[1]
     shape = shape_of(LINE, count)
@@ -66,9 +66,10 @@ def line_through(records: np.ndarray) -> LineFit:
 def _error_of_size(
     rest: np.ndarray, shapes: np.ndarray, fitted: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the standard error of the size of a shape, from the spectrum of the rest (record).
+    """Return the standard error of a fitted shape's size from the residuals' spectrum (record).
 
-    `shapes` is (record, sample), or (1, sample) if they are one.
+    `shapes` is (record, sample), or (1, sample) if all records share one. Also returns the degrees
+    of freedom.
     """
     count = rest.shape[1]
     sieve = sieve_of(rest, fitted)
@@ -82,12 +83,12 @@ def _error_of_size(
 
 
 def courses_of(records: np.ndarray) -> list[list[float]]:
-    """Return the courses of each record, as `LINE` or the times of exponentials, at most two.
+    """Return the trends of each record, as `LINE` or time constants of exponentials, at most two.
 
     Parameters
     ----------
     records
-        Without their oscillations, of one length (record, sample).
+        Records without oscillations, of equal length (record, sample).
     """
     number, count = records.shape
     found: list[list[float]] = [[] for _ in range(number)]
@@ -96,7 +97,7 @@ def courses_of(records: np.ndarray) -> list[list[float]]:
     shapes = _shapes(count)
     rest = records - records.mean(axis=1, keepdims=True)
     looked = np.arange(number)
-    # candidates of each record, without what was fitted to it before
+    # candidate trends of each record, orthogonal to those fitted before
     left = np.broadcast_to(shapes, (number, *shapes.shape))
     dearer = np.where(_COURSE_TIMES == LINE, 1.0, limits.EXPONENTIAL_OVER_LINE.value)
     for fitted in range(int(limits.MAX_COURSES.value)):

@@ -2,9 +2,9 @@
 
 Notes
 -----
-An oscillation moves the mean over an unfinished period; the level is the mean without it. A course
-(a drift, a running-in) belongs to the path: the mean over the path includes it. A mean that is to
-hold for the surface beyond the path treats it as a wander that may go on. So each record has two
+An oscillation biases the mean over an incomplete period; the level is the mean without it. A trend
+(drift, running-in) belongs to the path: the mean over the path includes it. A mean that represents
+the surface beyond the path treats the trend as slow drift that may continue. So each record has two
 errors: of the mean over its path, and beyond it.
 
 Coverage of the 95 % interval over 500 records of 1920 samples each and the median standard error
@@ -41,8 +41,8 @@ def levels_of(records: np.ndarray) -> Levels:
     Parameters
     ----------
     records
-        Means over equal stretches of time, of one length of at least three (record, stretch), in
-        any unit.
+        Means over equal time intervals, at least three, as many in each record (record, stretch),
+        in any unit.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def levels_of(records: np.ndarray) -> Levels:
     size = records.std(axis=1, keepdims=True)
     moved = size[:, 0] > 1e-12 * np.abs(mean[:, 0])
     scaled = (records - mean) / np.where(moved[:, None], size, 1.0)
-    scaled[~moved] = np.where(np.arange(samples) % 2, 1.0, -1.0)  # any: their error is nothing
+    scaled[~moved] = np.where(np.arange(samples) % 2, 1.0, -1.0)  # any values: their error is zero
     lines = lines_of(scaled)
     calm = without_lines(scaled, lines)
     courses = courses_of(_coarse(calm))
@@ -88,7 +88,7 @@ def levels_of(records: np.ndarray) -> Levels:
 
 
 def without_lines(records: np.ndarray, lines: list[list[float]]) -> np.ndarray:
-    """Return records without oscillations of so many cycles each (record, sample)."""
+    """Return records without oscillations of given numbers of cycles (record, sample)."""
     calm = records.copy()
     samples = records.shape[1]
     for k, cycles in enumerate(lines):
@@ -112,7 +112,7 @@ def _coarse(records: np.ndarray) -> np.ndarray:
 def _fit(
     record: np.ndarray, lines: list[float], courses: list[float]
 ) -> tuple[list[float], list[float], np.ndarray]:
-    """Fit all at once, and without the courses: level, lever of the level, rest; two of each."""
+    """Fit all terms, and all but the trends: level, its sensitivity and residuals; two of each."""
     samples = record.size
     ones = np.ones((samples, 1))
     waves = [waves_of(cycles, samples) for cycles in lines]

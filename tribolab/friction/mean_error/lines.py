@@ -10,15 +10,15 @@ import numpy as np
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 
-_FREQUENCY_STEP = 0.125  # cycles between frequencies that are tried
+_FREQUENCY_STEP = 0.125  # cycles between trial frequencies
 _MAX_FREQUENCY = 0.47  # cycles per sample
 _GOLDEN = 0.382
-_GOLDEN_ROUNDS = 18  # of the golden section: a frequency to 1e-4 of a step
-_GAIN_OFF_GRID = 1.02  # what the best frequency gains over the best of the grid, at most
+_GOLDEN_ROUNDS = 18  # golden-section steps: a frequency to 1e-4 of a grid step
+_GAIN_OFF_GRID = 1.02  # largest gain in power of the best frequency over the best of the grid
 
 
 class _Grid(NamedTuple):
-    """Frequencies [cycles per record], and orthonormal waves beside a line (frequency, 2, n)."""
+    """Frequencies [cycles per record]; waves orthogonal to a straight line (frequency, 2, n)."""
 
     cycles: np.ndarray
     waves: np.ndarray
@@ -41,7 +41,7 @@ def _grid(count: int) -> _Grid:
 
 
 def waves_of(cycles: float, count: int) -> np.ndarray:
-    """Return cosine and sine of so many cycles in a record, as columns (sample, 2)."""
+    """Return cosine and sine of a number of cycles in a record, as columns (sample, 2)."""
     angle = 2 * np.pi * cycles * (np.arange(count) + 0.5) / count
     return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
@@ -52,13 +52,14 @@ def lines_of(records: np.ndarray) -> list[list[float]]:
     Parameters
     ----------
     records
-        Of one length, in any unit (record, sample).
+        Records of equal length, in any unit (record, sample).
 
     Notes
     -----
-    A sine is fitted beside a line and the sines before it. It is accepted if its power exceeds the
-    spectrum of the rest at its frequency by `LINE_OVER_NOISE`, and takes most of the power about
-    it; one of few cycles, which noise with a long memory resembles, must explain nearly all.
+    A sine is fitted together with a straight line and the earlier sines. It is accepted if its
+    power exceeds the residual spectrum at its frequency by `LINE_OVER_NOISE`, and accounts for most
+    of the power near it. A sine of few cycles, which long-correlated noise resembles, must explain
+    nearly all.
     """
     count = records.shape[1]
     found: list[list[float]] = [[] for _ in records]
@@ -68,10 +69,10 @@ def lines_of(records: np.ndarray) -> list[list[float]]:
     rest = records - (records @ grid.line.T) @ grid.line
     looked = np.arange(len(records))
     for _ in range(int(limits.MAX_LINES.value)):
-        looked = looked[_may_hold_a_line(rest[looked], grid)]
+        looked = looked[_may_have_line(rest[looked], grid)]
         accepted = []
         for number in looked.tolist():
-            left = _one_more(records[number], rest[number], found[number], grid)
+            left = _fit_next_line(records[number], rest[number], found[number], grid)
             if left is not None:
                 rest[number] = left
                 accepted.append(number)
@@ -88,8 +89,8 @@ def _strongest(rest: np.ndarray, grid: _Grid) -> tuple[np.ndarray, np.ndarray]:
     return place, size[np.arange(len(rest)), place]
 
 
-def _may_hold_a_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
-    """Whether the strongest wave on the grid comes near what is accepted (record)."""
+def _may_have_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
+    """Return whether the strongest wave on the grid is near the limit of acceptance (record)."""
     if not len(rest):
         return np.zeros(0, bool)
     place, size = _strongest(rest, grid)
@@ -99,21 +100,21 @@ def _may_hold_a_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
     over = _GAIN_OFF_GRID * (size**2).sum(axis=1) / 2 / np.maximum(noise, 1e-300)
     few = at < limits.FEW_CYCLES.value + _FREQUENCY_STEP
     enough = np.where(few, limits.SLOW_LINE_OVER_NOISE.value, limits.LINE_OVER_NOISE.value)
-    # the noise beside a line is estimated lower when the line is fitted better
+    # the noise near a line is estimated lower if the line is fitted better
     return over > 0.5 * enough
 
 
-def _one_more(
+def _fit_next_line(
     record: np.ndarray, rest: np.ndarray, known: list[float], grid: _Grid
 ) -> np.ndarray | None:
-    """Fit one more oscillation to a record; what is left then, or None if there is no other."""
+    """Fit one more oscillation to a record; return the residuals, or None if not significant."""
     count = record.size
     place, _ = _strongest(rest[None], grid)
     base = np.column_stack([grid.line.T, *(waves_of(cycles, count) for cycles in known)])
     base, _ = np.linalg.qr(base)
     before = record - base @ (base.T @ record)
     middle = float(grid.cycles[place[0]])
-    cycles = _refined(before, base, middle)
+    cycles = _refine_frequency(before, base, middle)
     own = waves_of(cycles, count)
     own, _ = np.linalg.qr(own - base @ (base.T @ own))
     left = before - own @ (own.T @ before)
@@ -131,8 +132,8 @@ def _one_more(
     return left
 
 
-def _refined(rest: np.ndarray, base: np.ndarray, middle: float) -> float:
-    """Return the frequency at which a wave takes most of the rest, by the golden section."""
+def _refine_frequency(rest: np.ndarray, base: np.ndarray, middle: float) -> float:
+    """Return the frequency of the wave that explains most of the rest, by golden-section search."""
 
     def taken(cycles: float) -> float:
         own = waves_of(cycles, rest.size)

@@ -2,12 +2,12 @@
 
 Notes
 -----
-The cosine coefficients of a record are nearly independent, and the lowest ones have the variance
-that the mean has, up to a factor that depends on how the record wanders. The record is described as
-calm (white at low frequencies) or as an Ornstein-Uhlenbeck wander beneath white noise. Every
-forgetting time from 1/20 of the record to six records and every share of white noise is weighed
-by how well it describes the cosines, their size integrated out with Jeffreys' prior [1]_. The
-standard error is the weighted median over the models, U95 the half interval that holds 95 % of the
+The cosine coefficients of a record are nearly independent, and the variance of the lowest ones is
+that of the mean times a factor that depends on the kind of drift. The record is modelled as calm
+(white at low frequencies) or as an Ornstein-Uhlenbeck process plus white noise. Each correlation
+time from 1/20 of the record to six records and each share of white noise is weighted by its
+likelihood given the cosines, their scale integrated out with Jeffreys' prior [1]_. The standard
+error is the weighted median over the models, U95 the half interval that contains 95 % of the
 mixture of their Student distributions.
 
 References
@@ -28,11 +28,11 @@ from scipy.fft import dct
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 
-_MEMORY_GRID = np.geomspace(0.05, 6.0, 8)  # of the record
-# of the wander
+_MEMORY_GRID = np.geomspace(0.05, 6.0, 8)  # correlation times, as shares of the record
+# variance of the white noise over that of the drift at low frequencies
 _WHITE_SHARES = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 _MIN_COSINES = 4
-_BISECTIONS = 40  # of halving the bracket of U95: to the last digit that matters
+_BISECTIONS = 40  # steps of bisection for U95: to the last digit that matters
 _OUTSIDE_COVERAGE = 0.05
 
 
@@ -77,9 +77,9 @@ def errors_of_means(
     rest
         Records without oscillations and courses (record, sample), of at least three samples.
     lines
-        Cycles of the oscillations that were fitted to each: the cosines beside them say nothing.
+        Cycles of the oscillations fitted to each record: cosines near them are not used.
     courses
-        Number of courses that were fitted to each: they took as many of the lowest cosines.
+        Number of trends fitted to each record: as many of the lowest cosines are not used.
     """
     count, samples = rest.shape
     most = min(int(limits.COSINES.value), samples - 1)
@@ -134,7 +134,7 @@ def _kept_cosines(
 
 
 def _half_interval(weight: np.ndarray, errors: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Return the half interval that holds 95 % of each mixture (record)."""
+    """Return the half interval that contains 95 % of each mixture (record)."""
     quantile = special.stdtrit(free, 1 - _OUTSIDE_COVERAGE / 2)
     low, high = (quantile * end for end in (errors.min(axis=1), errors.max(axis=1)))
     known = high > 0

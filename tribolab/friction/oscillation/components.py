@@ -11,13 +11,13 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.oscillation import gather
 from tribolab.friction.oscillation.spectrum.survey import Survey
 
-_MAX_HARMONIC = 16  # harmonic that is looked at by itself
-# factors of frequency within which a line stands out of its surroundings
+_MAX_HARMONIC = 16  # highest harmonic that is examined individually
+# frequency ratios of the bins around a line that define its surroundings
 _SURROUNDINGS = (
     1.15,
     1.5,
 )
-_WINDOW_BINS = 0.8  # bins, that the window makes of a line
+_WINDOW_BINS = 0.8  # bins, width of a line due to the window
 
 
 class Component(NamedTuple):
@@ -39,10 +39,10 @@ def components(seen: Survey) -> tuple[Component, ...]:
 
     Notes
     -----
-    The strongest is taken out of the spectrum with its harmonics, whose width grows as the square
-    of their number [1]_, then the next is sought. Harmonics no stronger than a saw's are not
-    listed. A second line has to stand out of its surroundings, too: the spectrum of an irregular
-    wave is ragged, but no line stands out of it.
+    The strongest is removed from the spectrum with its harmonics, whose width grows as the square
+    of their number [1]_, then the search is repeated. Harmonics no stronger than those of a
+    sawtooth are not listed. A second line must also exceed its surroundings significantly: the
+    spectrum of an irregular wave is ragged, but has no such line.
 
     References
     ----------
@@ -78,17 +78,17 @@ def components(seen: Survey) -> tuple[Component, ...]:
         taken |= near
         seen = seen.without(taken)
     lines.sort(key=lambda line: -line.swing)
-    return tuple(lines if _hold(whole, core, lines) else lines[:1])
+    return tuple(lines if _dominate_surroundings(whole, core, lines) else lines[:1])
 
 
 def _line(seen: Survey, at: int) -> np.ndarray:
-    """Mask of the bins that a narrow line covers (bin)."""
+    """Return a mask of the bins that a narrow line covers (bin)."""
     f = seen.fine.frequency
     return np.abs(f - f[at]) <= max(limits.WIDTH_OF_LINE.value * f[at], 2.01 * seen.fine.width[at])
 
 
-def _hold(seen: Survey, core: np.ndarray, lines: list[Component]) -> bool:
-    """Whether narrow lines contain most of the power at their place."""
+def _dominate_surroundings(seen: Survey, core: np.ndarray, lines: list[Component]) -> bool:
+    """Return whether narrow lines contain most of the power around them."""
     if len(lines) < 2:
         return True
     f = seen.fine.frequency
@@ -107,14 +107,14 @@ def _spread(seen: Survey, level: np.ndarray, frequency: float) -> float:
     if not weight.sum() > 0:
         return 0.0
     variance = (f[near] - frequency) ** 2 @ weight / weight.sum()
-    # what the window alone makes of a line is no width of its own
+    # the width due to the window is subtracted
     return float(np.sqrt(max(variance - (_WINDOW_BINS * seen.fine.width[0]) ** 2, 0.0)))
 
 
 def _harmonics(
     seen: Survey, level: np.ndarray, frequency: float, own: float, spread: float
 ) -> np.ndarray:
-    """Which bins a line's harmonics cover, as far as they are no stronger than a saw's (bin)."""
+    """Return a mask of bins of a line's harmonics that are no stronger than a sawtooth's (bin)."""
     f = seen.fine.frequency
     width = float(seen.fine.width[0])
     excess = np.maximum(seen.fine.power - level, 0) * seen.fine.width
@@ -124,7 +124,7 @@ def _harmonics(
         part = np.abs(f - k * frequency) <= reach
         if excess[part].sum() <= limits.MAX_POWER_OF_HARMONIC.value * own / k**2:
             covered |= part
-        if reach >= 0.5 * frequency or k > _MAX_HARMONIC:  # the harmonics run into one another
+        if reach >= 0.5 * frequency or k > _MAX_HARMONIC:  # the harmonics overlap
             beyond = f > (k - 0.5) * frequency
             if excess[beyond].sum() <= limits.MAX_POWER_OF_HARMONIC.value * own * (1 / (k - 0.5)):
                 return covered | beyond
@@ -132,7 +132,7 @@ def _harmonics(
 
 
 def _stands_out(seen: Survey, core: np.ndarray, at: int) -> bool:
-    """Whether a bin exceeds its neighbours significantly."""
+    """Return whether a bin exceeds its neighbours significantly."""
     f, power = seen.fine.frequency, seen.fine.power
     beside = ~core & ~_line(seen, at)
     levels = [np.interp(f[at], seen.middle, seen.background)]

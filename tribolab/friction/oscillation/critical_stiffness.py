@@ -6,9 +6,9 @@ import numpy as np
 
 from tribolab.friction.oscillation import limits
 
-STIFFNESS = "stiffness_N_m"  # attribute of a run: of the rig in the direction of sliding
-# creep share and k/k_c of settled cycles of the ageing law (slider of test_critical_stiffness)
-# and measured as `stick_slip` does: the rise is less steep than the rig near k_c
+STIFFNESS = "stiffness_N_m"  # attribute of a run: stiffness of the rig in the direction of sliding
+# creep share and k/k_c of settled cycles of the ageing law (slider of test_critical_stiffness),
+# measured as in `stick_slip`: near k_c the rise is less steep than the rig's stiffness
 _SMALL_EVOLUTION = (  # b = 1.5 a
     [0.0, 0.0469, 0.1005, 0.1442, 0.1845, 0.2298, 0.2675, 0.376],
     [0.0, 0.0998, 0.2953, 0.4871, 0.6725, 0.7955, 0.8282, 0.7717],
@@ -35,7 +35,7 @@ def critical_stiffness(
     recurrence_distance
         Mean sliding distance from drop to drop [m].
     stiffness
-        Of the rig: the steepest rise of the friction force during a stick [N/m].
+        Stiffness of the rig: steepest rise of the friction force during a stick [N/m].
     load
         Normal force [N].
     cycles
@@ -44,18 +44,17 @@ def critical_stiffness(
     Returns
     -------
     tuple of ndarray
-        Infinity as the highest: creep is too small to bound it, the rig is far too soft.
+        The highest is infinite if creep is too small to bound it: the rig is far too soft.
 
     Notes
     -----
-    Steady sliding is unstable where the rig is softer than ``k_c = -(dF/d ln v)/D_c
-    = (b - a) N/D_c``, rate-and-state friction of memory length D_c, quasi-static [1]_. D_c is not
-    known from one run, but the sample creeps the more between slips the nearer k is to k_c: over
-    the distance from drop to drop a sample that sticks loads the rig by k times that distance.
-    ``1 - drop N/(k distance)`` is the part that it creeps, zero for k << k_c. The bounds are those
-    of cycles simulated with b = 1.5 a and b = 3 a, with an error of the creep of 0.05. A mass lets
-    slips overshoot, which changes drop and distance alike; it raises k_c by
-    ``(b - a)/a m v^2/D_c^2``.
+    Steady sliding is unstable if the rig is softer than ``k_c = -(dF/d ln v)/D_c = (b - a) N/D_c``
+    (quasi-static rate-and-state friction with memory length D_c [1]_). D_c is not known from one
+    run, but the closer k is to k_c, the more the sample creeps between slips: a sample that sticks
+    from drop to drop loads the rig by k times that distance. ``1 - drop N/(k distance)`` is the
+    share of creep, zero for k << k_c. The bounds are those of cycles simulated with b = 1.5 a and b
+    = 3 a, with an error of the creep of 0.05. Inertia makes slips overshoot, which changes drop and
+    distance alike; it raises k_c by ``(b - a)/a m v^2/D_c^2``.
 
     References
     ----------

@@ -9,8 +9,8 @@ import numpy as np
 from tribolab.arrays.medians import medians_of_rows
 from tribolab.friction.oscillation import limits
 
-_LOADING_PART = (0.08, 0.92)  # of a stick, in which the loading is looked at
-_LOADING_CELLS, _SLOPE_CELLS = 48, 16  # cells of it, and cells in a window: shorter ones add noise
+_LOADING_PART = (0.08, 0.92)  # part of a stick in which the loading rate is determined
+_LOADING_CELLS, _SLOPE_CELLS = 48, 16  # number, and cells per window: fewer add noise
 
 
 class Events(NamedTuple):
@@ -19,10 +19,10 @@ class Events(NamedTuple):
     Parameters
     ----------
     start, peak, stop
-        Moments of valley, peak and next valley [s] (event).
+        Times of valley, peak and next valley [s] (event).
     middle
-        Moment at which half of the drop is done [s] (event): steep, so that noise shifts it less
-        than the peak.
+        Time at which half of the drop is complete [s] (event): the fall is steep there, so that
+        noise shifts it less than the peak.
     rise, drop
         Heights of the rise and of the drop, in the signal's unit (event).
     """
@@ -43,18 +43,18 @@ def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
     values
         (time)
     noise
-        Of a sample, from `tribolab.friction.oscillation.spectrum.noise.noise_level`.
+        Standard deviation, from `tribolab.friction.oscillation.spectrum.noise.noise_level`.
 
     Returns
     -------
     tuple
-        The values, and how many were spikes.
+        The values, and the number of spikes.
     """
     if values.size < 5:
         return values, 0
     left, here, right = values[:-2], values[1:-1], values[2:]
     middle = np.clip(here, np.minimum(left, right), np.maximum(left, right))
-    # beside it the signal has to go on as if nothing had been: a drop is no spike
+    # except for a spike the signal must be continuous: a drop is not a spike
     apart = np.abs(here - middle)
     single = (apart > limits.MIN_SPIKE_OVER_NOISE.value * noise) & (
         apart > 2 * np.abs(right - left)
@@ -83,9 +83,9 @@ def turning_points(values: np.ndarray, hysteresis: float) -> np.ndarray:
 
     Notes
     -----
-    All swings below the threshold that are smaller than both neighbours are taken out at once,
-    until none is left. The smallest swing never decides whether a larger one counts, so that the
-    result does not depend on the order.
+    All swings below the threshold that are smaller than both neighbours are removed at once,
+    repeatedly until none remains. The smallest swing never decides whether a larger one counts, so
+    that the result does not depend on the order.
 
     Examples
     --------
@@ -118,19 +118,19 @@ def turning_points(values: np.ndarray, hysteresis: float) -> np.ndarray:
 
 
 def find_events(time: np.ndarray, values: np.ndarray, hysteresis: float) -> Events:
-    """Cycles of stick and slip in a record.
+    """Find the cycles of stick and slip in a record.
 
     Parameters
     ----------
     time, values
-        [s] and any unit, positive in the sense of friction (time).
+        [s], and friction in any unit, positive as resistance (time).
     hysteresis
         Smallest swing that counts.
 
     Returns
     -------
     Events
-        What begins or ends outside the record is left out.
+        Cycles that begin or end outside the record are left out.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def find_events(time: np.ndarray, values: np.ndarray, hysteresis: float) -> Even
     turns = turning_points(values, hysteresis)
     if turns.size < 4:
         return Events(*[np.zeros(0)] * len(Events._fields))
-    # the first and the last turn are where the record was cut
+    # the record is cut at the first and the last turn
     turns = turns[1:-1]
     if values[turns[0]] > values[turns[1]]:
         turns = turns[1:]
@@ -172,7 +172,7 @@ def loading_rate(time: np.ndarray, values: np.ndarray, events: Events) -> float:
     Parameters
     ----------
     time, values
-        In which the events were found.
+        The record in which the events were found.
     events
         From `find_events`.
 
@@ -192,7 +192,7 @@ def loading_rate(time: np.ndarray, values: np.ndarray, events: Events) -> float:
     """
     if not events.drop.size:
         return np.nan
-    # means over cells use all samples; the ends were picked where noise adds to them
+    # means over cells use all samples; single values at the ends are biased by noise
     edges = np.linspace(*_LOADING_PART, _LOADING_CELLS + 1)
     stick = (events.peak - events.start)[:, None]
     steps = 0.5 * np.diff(time) * (values[1:] + values[:-1] - 2.0 * values[0])

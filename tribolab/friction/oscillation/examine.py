@@ -34,12 +34,12 @@ from tribolab.friction.oscillation.waveform import (
     features,
 )
 
-# samples in a period that events are sought in, at least; more is averaged ...
+# fewest samples per period in the search for events; records with more are averaged
 _SAMPLES_PER_PERIOD = 36
-_COARSE_SAMPLES_PER_PERIOD = 12  # the same, where noise splits drops
-_EVENT_SAMPLES = 1 << 17  # samples that events are sought in: thousands of periods
-_DESPIKED_SAMPLES = 1 << 20  # samples; in longer records single ones hardly matter
-_SIMULATED_CYCLES = 200  # cycles that tell how much noise adds to them
+_COARSE_SAMPLES_PER_PERIOD = 12  # the same, if noise splits drops
+_EVENT_SAMPLES = 1 << 17  # most samples searched for events: thousands of periods
+_DESPIKED_SAMPLES = 1 << 20  # longer records are not despiked: single samples hardly matter
+_SIMULATED_CYCLES = 200  # simulated cycles that determine the bias due to noise
 _SIMULATION_ROUNDS = 2
 
 
@@ -89,11 +89,11 @@ def examine_record(
     Parameters
     ----------
     time, values
-        [s], friction positive in the sense of resistance (time).
+        [s], and friction, positive as resistance (time).
     thresholds
-        What counts.
+        Limits for events and records.
     force
-        Whether the values are a force [N]; for the record.
+        Whether the values are a force [N]; stored in the result.
     """
     record = make_record(time, values)
     n = record.values.size
@@ -109,16 +109,16 @@ def examine_record(
     surveyed = survey(record)
     if surveyed is None:
         return "too short for a spectrum"
-    view, slow = _settled(record, surveyed, noise, thresholds), slow_wave(record)
+    view, slow = _best_view(record, surveyed, noise, thresholds), slow_wave(record)
     if slow is None and not view.oscillation.false_alarm < limits.BAND_BY_CHANCE.value:
-        record, surveyed, view = _beside_slow_wave(record, surveyed, view, noise, thresholds)
+        record, surveyed, view = _without_slow_wave(record, surveyed, view, noise, thresholds)
     oscillation, part, events = view.oscillation, view.record, view.events
     lag = max(1, int(round(1 / (oscillation.frequency * 16 * part.spacing))))
     form = describe_waveform(part.values, lag, events, view.regularity.periods)
     probability = class_probabilities(features(form, oscillation))
     if events.drop.size:
         excess = _excess(record, view, form, probability)
-        swing = np.ptp(record.values)  # a mean cycle's extrapolated edges may exceed it
+        swing = np.ptp(record.values)  # extrapolated edges of a mean cycle may exceed it
         drop, rise = (np.minimum(x - excess, swing) for x in (events.drop, events.rise))
         events = events._replace(drop=drop, rise=rise)
     lines = components(surveyed)
@@ -132,12 +132,12 @@ def examine_record(
     )  # fmt: skip
 
 
-def _settled(record: EvenRecord, surveyed: Survey, noise: float, thresholds: EventLimits) -> View:
-    """Use the scale of the strongest line, or of another one that is regular.
+def _best_view(record: EvenRecord, surveyed: Survey, noise: float, thresholds: EventLimits) -> View:
+    """Return the view at the period of the strongest line, or at another one that is more regular.
 
-    Of few periods of a saw, the second harmonic may be the strongest line that counts: then the
-    drops repeat at another period, and the spectrum is looked at there. Slow wander may hide or
-    split drops, and so may noise: then they are looked for in means, and beside the wander.
+    In a record of few sawtooth periods the second harmonic may be the strongest significant line:
+    then the drops repeat at another period, and the spectrum is examined there. Slow drift or noise
+    may hide or split drops: then they are searched for in means, and without the drift.
     """
     view = _view(record, oscillation(surveyed), noise, thresholds)
     if at_odds(view.oscillation, view.regularity):
@@ -145,10 +145,10 @@ def _settled(record: EvenRecord, surveyed: Survey, noise: float, thresholds: Eve
         again = _view(record, oscillation(surveyed, near=own), noise, thresholds)
         if not at_odds(again.oscillation, again.regularity):
             view = again
-    # of a wander, too, what is left beside its mean over a while goes to and fro in that while
+    # slow drift minus its running mean also oscillates, with a period near the averaging time
     sure = view.oscillation.false_alarm < limits.BAND_BY_CHANCE.value
     if sure and view.regularity.kind not in SLIP_KINDS[::2]:
-        for part in (record, _beside_wander(record, view.oscillation)):
+        for part in (record, _without_wander(record, view.oscillation)):
             if part is None:
                 continue
             again = _view(part, view.oscillation, noise, thresholds, _COARSE_SAMPLES_PER_PERIOD)
@@ -160,18 +160,18 @@ def _settled(record: EvenRecord, surveyed: Survey, noise: float, thresholds: Eve
     return view
 
 
-def _beside_slow_wave(
+def _without_slow_wave(
     record: EvenRecord, surveyed: Survey, view: View, noise: float, thresholds: EventLimits
 ) -> tuple[EvenRecord, Survey, View]:
     """Remove a slow wave if a larger regular oscillation remains.
 
-    What is left of a wave of few periods is its harmonics, which are smaller.
+    A removed wave of few periods leaves its harmonics, which are smaller.
     """
     rest = without_slow_wave(record)
     found = survey(rest[0]) if rest else None
     if rest is None or found is None:
         return record, surveyed, view
-    again = _settled(rest[0], found, noise, thresholds)
+    again = _best_view(rest[0], found, noise, thresholds)
     sure = (
         again.oscillation.false_alarm < limits.BAND_BY_CHANCE.value
         and again.oscillation.swing > rest[1]
@@ -183,7 +183,7 @@ def _beside_slow_wave(
 
 
 def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
-    """Remove drift far slower than the oscillation, which makes drops unlike rises."""
+    """Remove drift far slower than the oscillation, which makes drops differ from rises."""
     periods = frequency * record.values.size * record.spacing
     degree = int(
         np.clip(
@@ -191,7 +191,7 @@ def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
         )
     )
     series = np.polynomial.legendre
-    if record.even:  # the polynomials are nearly orthogonal: their normal equations are harmless
+    if record.even:  # nearly orthogonal: the normal equations are well conditioned
         terms = series.legvander(np.linspace(-1, 1, record.values.size), degree)
         drift = terms @ np.linalg.solve(terms.T @ terms, terms.T @ record.values)
     else:
@@ -200,11 +200,11 @@ def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
     return record._replace(values=record.values - drift)
 
 
-def _beside_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord | None:
+def _without_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord | None:
     """Remove the mean over one period; None if there is hardly any drift.
 
-    A wave's mean over its own period does not change, so that its cycles stay as they are. Half a
-    period is lost at either end.
+    A wave's mean over its own period is constant, so that its cycles do not change. Half a period
+    is lost at each end.
     """
     size = int(round(1 / (oscillation.frequency * record.spacing)))
     n = record.values.size
@@ -228,7 +228,7 @@ def _view(
 ) -> View:
     """Find the cycles of an oscillation at the scale of its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))
-    # no more is averaged than the noise calls for: means round off what is abrupt
+    # average no more than the noise requires: means round off abrupt falls
     wanted = min(limits.SWING_OVER_NOISE.value * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
     first = slice(_EVENT_SAMPLES * size)
@@ -241,13 +241,13 @@ def _view(
         limits.MIN_DROP_IN_STEPS.value * step,
     )
     events = find_events(part.time, part.values, hysteresis)
-    if events.drop.size:  # cycles that differ have less of a line than of a drop: look at the drops
+    if events.drop.size:  # irregular cycles have a weak line: use the drops as the scale
         typical = thresholds.hysteresis * float(np.mean(events.drop))
         if typical > hysteresis:
             hysteresis = typical
             events = find_events(part.time, part.values, hysteresis)
     fall, whole = events.stop - events.peak, events.stop - events.start
-    # what is sharp tells the periods
+    # periods are counted between sharp edges
     if events.drop.size and median(fall / whole) > limits.MIN_FALL_OF_REVERSED_WAVE.value:
         turned = part._replace(values=-part.values)
         seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
@@ -259,29 +259,29 @@ def _view(
 def _excess(
     record: EvenRecord, view: View, form: WaveformFeatures, probability: np.ndarray
 ) -> float:
-    """Bias of the mean drop from valley to peak."""
+    """Return the bias of the mean drop from valley to peak."""
     if probability[0] >= 0.5:
         return 0.0
     oscillation, events = view.oscillation, view.events
     mean = float(np.mean(events.drop))
-    # the cycles lie on one another, and none is a pause
+    # the cycles are alike and without a pause
     if (
         form.period_scatter < limits.MAX_SCATTER_OF_SURE_PERIODS.value
         and view.regularity.periods.size == events.drop.size - 1
     ):
         means = {1: abrupt_drop, 2: smooth_drop, 3: abrupt_rise}.get(int(np.argmax(probability)))
-        # means round off what is abrupt
+        # means round off abrupt falls
         finer = max(1, round(view.record.spacing / record.spacing) // 2)
         last = int(view.record.values.size * round(view.record.spacing / record.spacing))
         part = EvenRecord(record.time[:last], record.values[:last], *record[2:])
         drop = means(coarsened(part, finer), events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
-    # of a sine, its power says best how large it is: the noise's has been taken off
+    # the power of a sine gives its size best: the power of the noise has been subtracted
     sine = float(np.clip((0.35 - oscillation.harmonic_content) / 0.2, 0.0, 1.0))
     if (
         view.regularity.kind == SLIP_KINDS[2]
-    ):  # power is that of the trains and of the quiet between
+    ):  # the power includes the quiet time between the trains
         sine = 0.0
     excess = 0.0
     if sine < 1:
@@ -292,12 +292,12 @@ def _excess(
 def noise_excess(
     record: EvenRecord, oscillation: Oscillation, events: Events, hysteresis: float
 ) -> float:
-    """Bias of the mean drop due to noise.
+    """Return the bias of the mean drop due to noise.
 
     Parameters
     ----------
     record
-        In which the events were found.
+        The record in which the events were found.
     oscillation
         Oscillation with its background.
     events
@@ -312,14 +312,14 @@ def noise_excess(
 
     Notes
     -----
-    Turning points are picked where the noise adds to them. How much that is depends on the form,
-    on the noise and on how often it is sampled, so it is seen by doing it again: noise drawn from
-    the background's spectrum is laid on the cycles that were found, and cycles are sought once
-    more. Harmonics may have been taken for noise: what is left beside straight lines from turn to
-    turn says how much there is. Noise slower than half the oscillation's frequency moves peaks and
-    valleys alike and is left out.
+    Turning points are extremes, so that noise increases the drop. The bias depends on the waveform,
+    the noise and the sampling rate, and is found by simulation: noise drawn from the background's
+    spectrum is added to straight lines between the turning points, and cycles are searched for
+    again. Harmonics may have been counted as noise: the residuals about the straight lines give its
+    true size. Noise slower than half the oscillation's frequency moves peaks and valleys alike and
+    is left out.
     """
-    # so many tell, however long the record
+    # a limited number of events is sufficient for a long record
     events = Events(*(part[:_SIMULATED_CYCLES] for part in events))
     n = int(np.searchsorted(record.time, events.stop[-1])) + 1
     frequency = np.fft.rfftfreq(n, record.spacing)
@@ -339,7 +339,7 @@ def noise_excess(
             drops.append(again.drop)
             if again.drop.size:
                 rests.append(_cycles(time, noisy, again)[2])
-        if not sum(rests) > 0:  # no cycles are left, or no noise was laid on them
+        if not sum(rests) > 0:  # no cycles are left, or no noise was added to them
             return 0.0
         height *= min(rest * len(rests) / sum(rests), 1.0)
     return float(np.concatenate(drops).mean() - events.drop.mean())

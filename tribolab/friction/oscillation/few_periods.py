@@ -10,16 +10,16 @@ import numpy as np
 from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, block_means
 
-_GRID_POINTS = 192  # that the record is averaged to
-_TRIED_CYCLES = np.arange(2.0, 5.21, 0.1)  # waves in the record that are tried
+_GRID_POINTS = 192  # points that the record is averaged to
+_TRIED_CYCLES = np.arange(2.0, 5.21, 0.1)  # trial numbers of waves in the record
 _WAVE_HARMONICS = 2
-_DRIFT_DEGREE = 4  # of the polynomial that is to explain less: drifts of any kind
+_DRIFT_DEGREE = 4  # of the polynomial that must explain less: drifts of any kind
 _MIN_SAMPLES = 32
 _SINE_COLUMNS = 4  # first columns of a wave's basis: straight line, cosine, sine
 
 
 class SlowWave(NamedTuple):
-    """Number of periods in the record, and the wave's share of the variance about a line."""
+    """Number of periods in the record, explained share of the variance about a line, and swing."""
 
     periods: float
     explained: float
@@ -28,7 +28,7 @@ class SlowWave(NamedTuple):
 
 @cache
 def _bases() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Orthonormal bases: straight line, polynomial (point, term), waves (cycles, point, term)."""
+    """Return orthonormal bases: line and polynomial (point, term), waves (cycles, point, term)."""
     x = (np.arange(_GRID_POINTS) + 0.5) / _GRID_POINTS
     powers = np.polynomial.legendre.legvander(2 * x - 1, _DRIFT_DEGREE)
     turn = 2 * np.pi * _TRIED_CYCLES[:, None] * x
@@ -48,10 +48,10 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
 
     Notes
     -----
-    Means over blocks are fitted with a straight line beside a sine and its second harmonic, two to
-    five of them in the record. Noise whose spectrum falls wanders at all scales: a single wave
-    holds three quarters of it in less than one record of a hundred. A drift is met as well by a
-    polynomial of fourth degree.
+    Means over blocks are fitted with a straight line plus a sine and its second harmonic, two to
+    five periods in the record. Red noise drifts at all scales: a single wave explains three
+    quarters of it in less than one record of a hundred. A polynomial of fourth degree describes a
+    drift as well as a wave does.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
     drift = values - polynomial @ (polynomial.T @ values)
     parts = np.einsum("kpt,p->kt", waves, rest)
     explained = (parts**2).sum(axis=1) / total
-    # a wave of twice the frequency has no part of its own at this one
+    # a wave mostly of the second harmonic does not count as one of this frequency
     own = (parts[:, 2:4] ** 2).sum(axis=1)
     explained = np.where(own > 0.5 * (parts**2).sum(axis=1), explained, 0.0)
     left = 1 - float(explained.max())
@@ -89,7 +89,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
 def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
     """Remove the dominant slow sine, and return its swing; None if it is small.
 
-    Beside a slow oscillation the spectrum does not tell a faster one from a wander.
+    Next to a slow oscillation the spectrum cannot distinguish a faster one from slow drift.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
 
 
 def _averaged(record: EvenRecord) -> tuple[np.ndarray, np.ndarray]:
-    """Return means over parts of the record, and where they are in it (0 to 1)."""
+    """Return means over parts of the record, and their positions in it (0 to 1)."""
     if record.even:
         means = block_means(record.values, max(record.values.size // (4 * _GRID_POINTS), 1))
         x = (np.arange(means.size) + 0.5) / means.size

@@ -1,4 +1,4 @@
-"""Numbers that decide what is seen of stick-slip and of other oscillations."""
+"""Limits for stick-slip and other oscillations."""
 
 from tribolab.core.limit import Count, Limit
 

@@ -8,34 +8,34 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.events import Events, find_events
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
-_WINDOW_OF_FALL = 0.38  # of a period to either side of the fall
-_GAP_TO_FALL = 0.005  # of a period between the fall and the stretches beside it ...
+_WINDOW_OF_FALL = 0.38  # of a period on each side of the fall
+_GAP_TO_FALL = 0.005  # of a period between the fall and the intervals next to it ...
 _AVERAGED_PART = 0.06  # ... whose means are compared: slow noise is alike in both
 _FALL_ROUNDS = 3
-_CYCLE_PHASES = 256  # at which the extremes of a smooth cycle are sought
+_CYCLE_PHASES = 256  # at which the extremes of a smooth cycle are evaluated
 
 
 def abrupt_drop(record: EvenRecord, events: Events) -> float:
-    """Mean drop of a wave that rises slowly and falls abruptly.
+    """Return the mean drop of a wave that rises slowly and falls abruptly.
 
     Parameters
     ----------
     record
-        In which the events were found.
+        The record in which the events were found.
     events
-        At least two, their periods alike.
+        At least two, with similar periods.
 
     Returns
     -------
     float
-        In the signal's unit; NaN where there are too few samples or events.
+        In the signal's unit; NaN for too few samples or events.
 
     Notes
     -----
-    Cycles are laid on one another by the middles of their falls, and averaged. Of a straight fall,
-    the integral of z(1 - z) over the part z that is left is a sixth of its duration. From the means
-    of short stretches just before and just after it, the slope of the loading leads to its begin
-    and its end. Nothing is picked because it is large, so that noise does not make the drop larger.
+    Cycles are aligned at the middles of their falls and averaged. For a linear fall, the integral
+    of z(1 - z), with z the remaining share of the drop, is a sixth of its duration. The means of
+    short intervals just before and after the fall are extrapolated to its ends with the loading
+    slope. No extreme values are selected, so that noise does not bias the drop.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
     period = float(np.diff(events.middle).mean())
     spacing = record.spacing / period
     count = int(_WINDOW_OF_FALL / spacing)
-    place = spacing * (np.arange(-count, count) + 0.5)  # middles lie between two samples
+    place = spacing * (np.arange(-count, count) + 0.5)  # middles are between two samples
     reach = count * record.spacing
     whole = (events.middle - reach >= record.time[0]) & (events.middle + reach <= record.time[-1])
     if count < 2 or not whole.any():
@@ -77,19 +77,19 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
 
 
 def abrupt_rise(record: EvenRecord, events: Events) -> float:
-    """Mean height of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
+    """Return the mean height of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
 
     Parameters
     ----------
     record
-        In which the events were found.
+        The record in which the events were found.
     events
-        At least three, their periods alike.
+        At least three, with similar periods.
 
     Returns
     -------
     float
-        In the signal's unit; NaN where there are too few samples or events.
+        In the signal's unit; NaN for too few samples or events.
     """
     turned = record._replace(values=-record.values)
     swing = float(np.min(events.drop)) if events.drop.size else 0.0
@@ -97,25 +97,25 @@ def abrupt_rise(record: EvenRecord, events: Events) -> float:
 
 
 def smooth_drop(record: EvenRecord, events: Events) -> float:
-    """Mean drop, from valley to peak, of a wave that rises and falls smoothly.
+    """Return the mean drop, from peak to valley, of a wave that rises and falls smoothly.
 
     Parameters
     ----------
     record
-        In which the events were found.
+        The record in which the events were found.
     events
-        At least three, their periods alike.
+        At least three, with similar periods.
 
     Returns
     -------
     float
-        In the signal's unit; NaN where there are too few samples or events.
+        In the signal's unit; NaN for too few samples or events.
 
     Notes
     -----
-    Least squares of a sine and its second harmonic, whose phase goes on by one period from the
-    middle of one fall to the next, beside a straight line: nearly all that a record tells of the
-    size of a sine in noise.
+    Least-squares fit of a straight line, a sine and its second harmonic, whose phase advances by
+    one period from the middle of one fall to the next: nearly the best possible estimate of a sine
+    in noise.
 
     Examples
     --------

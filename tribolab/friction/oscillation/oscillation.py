@@ -15,7 +15,7 @@ from tribolab.friction.oscillation.spectrum.survey import Survey
 
 _SUMMED_HARMONICS = 6
 _BANDS_OF_HUMP = 7  # bands that a hump in the spectrum covers
-_MEAN_FREQUENCY_ROUNDS = 15  # in which its mean settles
+_MEAN_FREQUENCY_ROUNDS = 15  # iterations in which the mean frequency converges
 
 
 class Oscillation(NamedTuple):
@@ -24,29 +24,29 @@ class Oscillation(NamedTuple):
     Parameters
     ----------
     frequency
-        Of the strongest oscillation [Hz]; where none is significant, of the largest hump.
+        Frequency of the strongest oscillation [Hz]; if none is significant, of the largest hump.
     frequency_error
         Standard error from the width of the peak [Hz].
     mean_frequency, mean_frequency_error
-        Of a wave without a sharp line, the mean over its spectrum [Hz], see `mean_frequency`.
+        For a wave without a sharp line, the mean over its spectrum [Hz], see `mean_frequency`.
     false_alarm
         Probability that noise shows such a peak anywhere in the spectrum.
     prominence
         Power of the peak over its background.
     swing
-        From valley to peak of the oscillation as its power (with harmonics) gives it.
+        Peak-to-valley size of the oscillation, from its power (with harmonics).
     noise
         Standard deviation of the background below ten times the frequency.
     share
-        Part of the variance from half the frequency on that is the oscillation.
+        Share of the oscillation in the variance above half its frequency.
     harmonic_content
-        Amplitude of the harmonics 2 to 6 over that of the first.
+        Amplitude of the harmonics 2 to 6 relative to the first.
     bands, power, background, level
         Spectrum in bands [Hz] and its background; level that noise exceeds with 1 in 1000.
     mains
-        Lines of the mains; they are taken out first.
+        Lines of the mains; they are removed first.
     method
-        How the spectrum was had.
+        Method of the spectrum.
     """
 
     frequency: float
@@ -75,20 +75,20 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
     seen
         From `tribolab.friction.oscillation.spectrum.survey.survey`.
     near
-        Frequency that the drops tell [Hz]: the oscillation is sought near it, be its line lower
-        than its harmonics' or not.
+        Frequency of the drops [Hz]: the oscillation is searched for near it, even if a harmonic is
+        stronger.
 
     Notes
     -----
     The spectrum is averaged over bands a tenth wide, because the periods of stick-slip scatter by
     as much; significance is that of a band over red and white noise, corrected for the number of
-    bands. Of the significant bands that with the most power above the background counts.
+    bands. Among the significant bands, the one with the most power above the background is used.
     """
     fine, middle, power, width = seen.fine, seen.middle, seen.power, seen.width
     strong = np.where(
         seen.significant & (seen.cycles >= limits.MIN_CYCLES_IN_RECORD.value), seen.excess, 0.0
     )
-    # without a significant band: where most of the power above the slow wander lies
+    # without a significant band: the maximum of smoothed frequency times power, above slow drift
     energy = ndimage.uniform_filter1d(np.log(np.maximum(middle * power, 1e-300)), _BANDS_OF_HUMP)
     energy = np.where(seen.cycles >= 2 * limits.MIN_CYCLES_IN_RECORD.value, energy, -np.inf)
     hump = int(np.argmax(energy))
@@ -125,7 +125,7 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
 
 
 def _nearest_summit(fine: Spectrum, near: float) -> int:
-    """Strongest bin near a frequency, never that of the mean; of one beyond all, the next."""
+    """Return the strongest bin near a frequency, never bin 0; the nearest one if none is near."""
     part = np.abs(fine.frequency - near) <= max(
         limits.MAX_DISTANCE_FROM_DROPS.value * near, 1.01 * fine.width[0]
     )
@@ -136,16 +136,16 @@ def _nearest_summit(fine: Spectrum, near: float) -> int:
 
 
 def _summit(fine: Spectrum, starts: np.ndarray, top: int) -> int:
-    """Strongest bin of the strongest band."""
+    """Return the strongest bin of the strongest band."""
     stop = starts[top + 1] if top + 1 < starts.size else fine.frequency.size
     return int(starts[top] + np.argmax(fine.power[starts[top] : stop]))
 
 
 def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np.ndarray]:
-    """Return a line's frequency as the centre of its power, its error, its harmonics' variances."""
+    """Return a line's frequency (centre of its power), its error, and its harmonics' variances."""
     f0, error = float(fine.frequency[at]), 0.0
     excess = np.maximum(fine.power - level, 0) * fine.width
-    excess[fine.frequency <= 0] = 0.0  # what the mean leaves is no part of a line
+    excess[fine.frequency <= 0] = 0.0  # the remainder of the mean is not part of a line
     for _ in range(3):
         near = np.abs(fine.frequency - f0) <= max(
             limits.HALF_WIDTH_OF_GATHERED_BAND.value * f0, 2.01 * fine.width[at]
@@ -155,7 +155,8 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
             break
         f0 = float(fine.frequency[near] @ weight / weight.sum())
         spread = float(np.sqrt((fine.frequency[near] - f0) ** 2 @ weight / weight.sum()))
-        # a jittering line of width s over a record of n bins wanders by s / sqrt(bins it covers)
+        # the centre of a jittering line of width s over a record scatters by s / sqrt(bins it
+        # covers)
         error = spread / np.sqrt(max(spread / fine.width[at], 1.0))
     powers = np.zeros(_SUMMED_HARMONICS)
     for k in range(1, _SUMMED_HARMONICS + 1):
@@ -169,14 +170,14 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
 
 
 def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, float]:
-    """Mean frequency of a wave without a sharp line, and its standard error.
+    """Return the mean frequency of a wave without a sharp line, and its standard error.
 
     Parameters
     ----------
     fine
         The spectrum.
     start
-        Frequency about which the wave's power lies [Hz].
+        Frequency around which the wave's power is [Hz].
     floor
         Power density of the white noise.
 
@@ -188,8 +189,8 @@ def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, f
     Notes
     -----
     m1/m0, the mean frequency of irregular sea waves [1]_, with the moments of the spectrum under a
-    lognormal window about the mean itself, so that neither wander nor hiss counts. It asks for no
-    threshold, unlike the count of drops, and noise moves it half as much.
+    lognormal window around the mean itself, so that neither slow drift nor noise counts. Unlike the
+    count of drops it needs no threshold, and noise shifts it half as much.
 
     References
     ----------
@@ -206,14 +207,14 @@ def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, f
         if not min(total, moment) > 0:  # nothing but white noise
             return mean, np.nan
         mean = moment / total
-    # a Hann window ties neighbouring bins together: two thirds of them are independent
+    # a Hann window correlates neighbouring bins: two thirds of them are independent
     scatter = 3 / fine.freedom[2:] * (weight * (frequency - mean)) ** 2
     return mean, float(np.sqrt(scatter.sum()) / total)
 
 
 def _swing(powers: np.ndarray) -> float:
-    """Peak-to-valley swing, between that of a sine and a sawtooth by the share of harmonics."""
+    """Return the peak-to-valley swing, between sine and sawtooth by the share of harmonics."""
     variance = powers.sum()
-    share = min(powers[1:].sum() / max(variance, 1e-300) / 0.39, 1.0)  # 0.39: an ideal saw's
+    share = min(powers[1:].sum() / max(variance, 1e-300) / 0.39, 1.0)  # 0.39: an ideal sawtooth
     factor = np.sqrt(8.0) * (1 - share) + np.sqrt(12.0) * share
     return factor * np.sqrt(variance)

@@ -1,4 +1,4 @@
-"""Agreement of drops and spectrum on a period, and the resulting claim."""
+"""Agreement of drops and spectrum on a period, and the resulting classification."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tribolab.friction.oscillation.waveform import (
     most_probable,
 )
 
-AT_ODDS = "the spectrum tells a period"  # begins the remark that drops tell another one
+AT_ODDS = "the spectrum tells a period"  # begins the remark that drops give another period
 
 
 class PeriodVerdict(NamedTuple):
@@ -33,11 +33,11 @@ class PeriodVerdict(NamedTuple):
     kind
         One of `CLASSES`, or "not decided".
     frequency, frequency_error
-        By the drops where they are alike, by the spectrum else [Hz].
+        From the drops if these are regular, else from the spectrum [Hz].
     periods
-        In the record.
+        Number of periods in the record.
     doubt
-        Why nothing is claimed; empty where something is.
+        Why no class is assigned; else empty.
     """
 
     kind: str
@@ -48,7 +48,7 @@ class PeriodVerdict(NamedTuple):
 
 
 def at_odds(oscillation: Oscillation, seen: Regularity) -> bool:
-    """Whether spectrum and drops give different periods, beyond their errors."""
+    """Return whether spectrum and drops give different periods, beyond their errors."""
     periods = seen.periods
     if not periods.size:
         return False
@@ -82,38 +82,38 @@ def period_verdict(
     duration: float,
     form: WaveformFeatures,
 ) -> PeriodVerdict:
-    """Say what is claimed, by the class's probabilities and where drops and spectrum agree.
+    """Classify the oscillation by class probabilities and by agreement of drops and spectrum.
 
     Parameters
     ----------
     probability
-        Of each of `CLASSES`.
+        Probability of each of `CLASSES`.
     oscillation, seen
-        What the spectrum says, and the drops.
+        Results of the spectrum, and of the drops.
     slow
-        The one slow wave that nearly all of the fluctuation is, if there is one.
+        The single slow wave that explains nearly all of the fluctuation, if any.
     lines
         All significant oscillations.
     duration
-        Of the record [s].
+        Duration of the record [s].
     form
-        Of the cycles.
+        Waveform of the cycles.
     """
     kind = most_probable(probability)
     periods = seen.periods
     frequency, error = oscillation.frequency, oscillation.frequency_error
-    # drops tell the period better than the spectrum, where periods are alike and the two agree
+    # regular drops give the period better than the spectrum, if the two agree
     odd, significant = (
         at_odds(oscillation, seen),
         oscillation.false_alarm < limits.BAND_BY_CHANCE.value,
     )
-    # where two frequencies beat, periods scatter, and yet there are lines
+    # if two frequencies beat, periods scatter although lines exist
     several = (
         len(lines) > 1 and lines[1].swing > limits.MIN_SWING_OF_SECOND_LINE.value * lines[0].swing
     )
     irregular = seen.kind == SLIP_KINDS[1] and not several
     sharp = significant and oscillation.share > limits.MIN_SHARE_OF_SHARP_LINE.value
-    if irregular and not sharp:  # no line in the spectrum to speak of
+    if irregular and not sharp:  # no clear line in the spectrum
         frequency, error = oscillation.mean_frequency, oscillation.mean_frequency_error
     elif (
         periods.size > 1 and scatter(periods) < limits.MAX_SCATTER_OF_SURE_PERIODS.value and not odd
@@ -123,7 +123,7 @@ def period_verdict(
     own = 1 / float(periods.mean()) if irregular else frequency
     count = own * duration
     unclaimed = kind in (CLASSES[0], NOT_CLEAR)
-    # beside many periods of a wave, a slow one is the wander that they ride on
+    # a slow wave under many periods of another one is drift
     few = slow is not None and count < limits.MIN_CYCLES_PER_SLOW_WAVE.value * slow.periods
     if slow is not None and (
         unclaimed
@@ -136,7 +136,7 @@ def period_verdict(
         and not (significant or repeats)
         and probability[0] > limits.MAX_CHANCE_OF_SMOOTH_SLIDING.value
     ):
-        kind = CLASSES[0]  # neither a line nor drops that go on repeating
+        kind = CLASSES[0]  # neither a line nor repeating drops
     if kind == CLASSES[0] and lines and lines[0].false_alarm < limits.SURE_LINE_BY_CHANCE.value:
         return _withheld(
             f"no drops repeat, but the spectrum has a line at {lines[0].frequency:.4g} Hz"
@@ -160,7 +160,7 @@ def period_verdict(
     if kind == CLASSES[2] and (mixed := _mixed(oscillation, lines, form)):
         return _withheld(mixed)
     if count < limits.MIN_CYCLES_IN_RECORD.value:
-        # a wander has a "period" as well; it counts where one wave is nearly all there is
+        # slow drift also has a "period"; it counts only if a single wave explains nearly everything
         known = count if slow is not None else np.nan
         return _withheld(f"only {count:.1f} periods, {_FEW}", known)
     if (
@@ -172,7 +172,7 @@ def period_verdict(
         return PeriodVerdict(kind, frequency, error, count)  # noise hides the drops of a line
     if not seen.kind or (irregular and periods.size < limits.MIN_PERIODS_FOR_SCATTER.value):
         return _withheld("too few drops repeat to tell the period")
-    trains = seen.kind == SLIP_KINDS[2]  # they have lines of their own
+    trains = seen.kind == SLIP_KINDS[2]  # intermittent trains have lines of their own
     strongest = lines[0].frequency if several and not trains else frequency
     if abs(np.log(frequency / strongest)) > limits.MAX_DIFFERENCE_OF_PERIODS.value:
         return _withheld(

@@ -20,9 +20,9 @@ class Regularity(NamedTuple):
     Parameters
     ----------
     kind
-        One of `SLIP_KINDS`; empty where there are too few periods to say.
+        One of `SLIP_KINDS`; empty for too few periods.
     share
-        Part of the time that oscillates.
+        Share of the time with oscillation.
     periods
         Times from drop to drop, pauses left out [s].
     """
@@ -38,20 +38,20 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
     Parameters
     ----------
     record
-        In which the events were found.
+        The record in which the events were found.
     events
         Cycles of stick and slip.
 
     Returns
     -------
     Regularity
-        Intermittent where over a seventh of the time is quiet, else irregular where the periods
-        scatter by more than 18 %.
+        Intermittent if over a seventh of the time is quiet, else irregular if the periods scatter
+        by more than 18 %.
 
     Notes
     -----
-    A long time between two drops is a pause if friction neither climbs through its middle as in a
-    long stick, nor swings as in a long wave; before the first drop and after the last, alike.
+    A long time between two drops is a pause if friction neither rises in its middle as in a long
+    stick, nor swings as in a long wave. The same applies before the first drop and after the last.
 
     Examples
     --------
@@ -74,15 +74,15 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
     for k in np.flatnonzero(between > limits.MIN_PAUSE.value * usual):
         a, b = events.middle[k], events.middle[k + 1]
         climb = drop * (b - a - 1.3 * usual) / (b - a)
-        # a train ends with a drop and begins with a climb; a reversed one the other way round
-        if any(_still(record, a + c * usual, b - (1.3 - c) * usual, climb) for c in (0.3, 1.0)):
+        # a train ends with a drop and begins with a rise, a reversed one conversely
+        if any(_is_still(record, a + c * usual, b - (1.3 - c) * usual, climb) for c in (0.3, 1.0)):
             paused[k] = True
             quiet += float(b - a - usual)
-    # at an end of the record a part of a period is cut off
+    # at an end of the record a period is incomplete
     for c in (0.3, 1.0):
         for a, b in ((ends[0], first - c * usual), (last + c * usual, ends[1])):
-            if b - a > usual and _still(record, a, b, drop * min((b - a) / usual, 1.0)):
-                quiet += 0.5 * float(b - a)  # one half for each of the two ways
+            if b - a > usual and _is_still(record, a, b, drop * min((b - a) / usual, 1.0)):
+                quiet += 0.5 * float(b - a)  # one half for each of the two orders
     share = float(np.clip(1 - quiet / (ends[1] - ends[0]), 0.0, 1.0))
     periods = between[~paused]
     if share < 1 - limits.MIN_QUIET_TIME.value:
@@ -100,16 +100,16 @@ def scatter(periods: np.ndarray) -> float:
     return float(np.std(periods, ddof=1) / periods.mean()) if periods.size > 1 else np.nan
 
 
-def _still(record: EvenRecord, start: float, stop: float, climb: float) -> bool:
-    """Whether friction hardly moves in a stretch in which a stick would climb by so much."""
+def _is_still(record: EvenRecord, start: float, stop: float, climb: float) -> bool:
+    """Return whether friction hardly changes in an interval; a stick would rise by `climb`."""
     part = slice(*np.searchsorted(record.time, [start, stop]))
     values = record.values[part]
     if values.size < 6:
         return False
     pieces = min(values.size // 2, 8)
-    size, longer = divmod(values.size, pieces)  # so many are one sample longer
+    size, longer = divmod(values.size, pieces)  # the first pieces are one sample longer
     first = np.arange(pieces) * size + np.minimum(np.arange(pieces), longer)
     means = np.add.reduceat(values, first) / np.diff(first, append=values.size)
-    # the means of the first and the last piece are a piece's length less than the stretch apart
+    # the means of the first and the last piece are one piece length less than the interval apart
     expected = climb * (1 - 1 / pieces)
     return float(np.ptp(means)) < limits.MAX_CHANGE_IN_PAUSE.value * expected

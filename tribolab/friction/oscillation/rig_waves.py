@@ -2,13 +2,14 @@
 
 Notes
 -----
-A disc that runs out, or whose track differs from place to place, moves the friction at whole
-multiples of its turns. Where to look is known, as of the mains: at the rig's own angle. A speed
-that is some per cent off would lose step with the disc over many turns, so the waves are fitted
-to a few turns at a time. They are the rig's where they stand out of what lies beside them and go
-on from one piece to the next in step; stick-slip whose period is a turn by chance does not. In a
-record that is too slow for its turns their waves are seen at another frequency (8 Hz at 2 Hz in 5
-samples a second), and are sought at the rig's angle all the same.
+Run-out of a disc, or a track that varies along its circumference, changes friction at whole
+multiples of the rotation frequency. These frequencies are known, like those of the mains: waves are
+fitted to the angle of the rig. A speed that is wrong by some per cent would lose phase with the
+disc over many turns, so the waves are fitted to a few turns at a time. They are attributed to the
+rig if they exceed their surroundings in the spectrum and keep their phase from one piece to the
+next; stick-slip whose period is one turn by chance does not. If a record is sampled too slowly,
+waves appear at an alias frequency (8 Hz at 2 Hz with 5 samples per second), but are still found
+from the rig's angle.
 """
 
 from __future__ import annotations
@@ -23,18 +24,18 @@ from tribolab.arrays.chunks import pieces
 from tribolab.friction.oscillation import limits
 from tribolab.friction.run_out import turned
 
-_TURNS_PER_FIT = 8.0  # that one fit spans
+_TURNS_PER_FIT = 8.0  # turns that one fit covers
 _MAX_ORDER = 8
-_BLOCKS_PER_TURN = 32  # blocks in a turn that tell the waves
-# spectral widths from a line, at which its surroundings are looked at
+_BLOCKS_PER_TURN = 32  # blocks per turn to which waves are fitted
+# spectral widths from a line that define its surroundings
 _WIDTHS_TO_SURROUNDINGS = (
     1.0,
     1.5,
     2.0,
 )
-_FAST_PIECE_SAMPLES = 64  # samples in a piece that tells waves as fast as that
+_FAST_PIECE_SAMPLES = 64  # samples in a piece for aliased waves
 _MAX_FAST_ORDER = 2
-REPEATS = "repeats"  # the word by which what repeats is known among what is the instrument's
+REPEATS = "repeats"  # marks repeating waves in the text of ``instrument``
 _TIMES = {1: "once", 2: "twice"}
 
 
@@ -50,7 +51,7 @@ class RigWave(NamedTuple):
     undersampled: bool = False
 
     def words(self, what: str) -> str:
-        """Say how often it repeats in what, e.g. "turn".
+        """Return a text with the repetitions per period `what`, e.g. "turn".
 
         Examples
         --------
@@ -70,7 +71,7 @@ class RigMotion(NamedTuple):
     what: str
 
     def angle(self, time: np.ndarray, part: slice) -> np.ndarray:
-        """Angle [rad] of the samples of a part at some times [s]."""
+        """Return the angle [rad] of the samples of a part at given times [s]."""
         if isinstance(self.rate, float):
             return self.rate * (time - time[:1])
         return turned(time, self.rate[part])
@@ -82,7 +83,7 @@ def motion_of(run: xr.Dataset) -> RigMotion | None:
     Parameters
     ----------
     run
-        With ``rotation_speed``, or a rotation speed or frequency of strokes that its file states.
+        With ``rotation_speed``, or with a rotation speed or stroke frequency stated in its file.
     """
     if "rotation_speed" in run:
         return RigMotion(run["rotation_speed"].values, "turn")
@@ -122,7 +123,7 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
     size = max(1, int(n / turns / _BLOCKS_PER_TURN))
     found = None
     if orders.size:
-        found = _repeated(
+        found = _find_repeated(
             values,
             angle,
             orders,
@@ -133,7 +134,7 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
     if found is not None:
         return found
     fast = np.arange(slow + 1, _MAX_FAST_ORDER + 1)
-    seen = np.abs((fast * turns / n + 0.5) % 1 - 0.5)  # cycles in a sample
+    seen = np.abs((fast * turns / n + 0.5) % 1 - 0.5)  # cycles per sample
     fast = fast[
         (seen > limits.MIN_DISTANCE_OF_ALIAS.value)
         & (seen < 0.5 - limits.MIN_DISTANCE_OF_ALIAS.value)
@@ -142,11 +143,11 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
     if not fast.size or not count:
         return None
     late = limits.MAX_PHASE_SHIFT_OF_ALIAS.value * count / turns
-    wave = _repeated(values, angle, fast, count, 1, late)
+    wave = _find_repeated(values, angle, fast, count, 1, late)
     return None if wave is None else wave._replace(undersampled=True)
 
 
-def _repeated(
+def _find_repeated(
     values: np.ndarray, angle: np.ndarray, orders: np.ndarray, count: int, size: int, late: float
 ) -> RigWave | None:
     """Look for waves of some orders in `count` pieces, in blocks of `size` samples."""
@@ -157,7 +158,7 @@ def _repeated(
     if np.diff(edges).min() < 3 * size * (2 * orders.size + 2):
         return None
     fits = [_fit(values[a:b], angle[a:b], size, orders, turns / count) for a, b in _ranges(edges)]
-    believed, real = _believed(orders, fits, turns / count, late)
+    believed, real = _significant_orders(orders, fits, turns / count, late)
     if not believed.size:
         return None
     signal = np.zeros(n)
@@ -170,7 +171,7 @@ def _repeated(
 
 
 class _Fit(NamedTuple):
-    """Complex amplitude of each order, and mean power beside each, of a piece (order)."""
+    """Complex amplitude of each order, and mean power of its surroundings, in a piece (order)."""
 
     size: np.ndarray
     beside: np.ndarray
@@ -184,7 +185,7 @@ def _ranges(edges: np.ndarray) -> list[tuple[int, int]]:
 def _fit(
     values: np.ndarray, angle: np.ndarray, size: int, orders: np.ndarray, turns: float
 ) -> _Fit:
-    """Fit a straight line and the waves to a piece, and look at what is left beside them."""
+    """Fit a straight line and the waves to a piece, and the residual power around the waves."""
     count = values.size // size
     y = values[: count * size].reshape(count, size).mean(axis=1)
     at = angle[: count * size].reshape(count, size).mean(axis=1)
@@ -204,10 +205,10 @@ def _fit(
     return _Fit(amplitude, beside, freedom)
 
 
-def _believed(
+def _significant_orders(
     orders: np.ndarray, fits: list[_Fit], turns: float, off: float
 ) -> tuple[np.ndarray, float]:
-    """Significant orders with a stable phase, and their part without noise."""
+    """Return the significant orders with a stable phase, and their share without noise."""
     size = np.array([fit.size for fit in fits])
     power, beside = (abs(size) ** 2).mean(axis=0), np.mean([fit.beside for fit in fits], axis=0)
     ratio = power / np.maximum(beside, 1e-300)

@@ -1,4 +1,4 @@
-"""Stick-slip of several runs against sliding speed, and scaling of frequency with speed."""
+"""Stick-slip of several runs against sliding speed, and the scaling of frequency with speed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _MEANS = (
     "oscillating_time_share",
 )
 _NUMBERS = (*_MEANS, "oscillation_swing", "rig_swing")
-# variables of a result of `stick_slip` that make a curve: nothing else of it has to be read
+# variables of a `stick_slip` result that a curve needs: only these have to be read
 NEEDED = frozenset(
     {"sliding_speed", "waveform", "instrument", "regularity", REJECTED, *_NUMBERS}
     | {f"force_{name}" for name in _NUMBERS}
@@ -46,11 +46,11 @@ class Scaling(NamedTuple):
     Parameters
     ----------
     exponent, error
-        And its standard error; 1 is a fixed wavelength, 0 a fixed frequency.
+        Exponent and its standard error; 1 is a fixed wavelength, 0 a fixed frequency.
     speeds
         Number of speeds.
     text
-        Which of the two it is, in words.
+        Interpretation in words.
     """
 
     exponent: float
@@ -62,34 +62,33 @@ class Scaling(NamedTuple):
 def stick_slip_curve(
     slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1, **labels: Sequence[Label]
 ) -> xr.Dataset:
-    """Stick-slip against speed over several runs.
+    """Return stick-slip against speed over several runs.
 
     Parameters
     ----------
     slips
         From `stick_slip`, one per run; segments that a person rejected are left out.
     speed_tolerance
-        Neighbouring speeds that differ by no more than this are one.
+        Neighbouring speeds that differ by no more than this are combined.
     **labels
-        What tells the runs apart, one label for each run, e.g. ``surface=["Sb-R", "Smooth"]``.
+        Labels that distinguish the runs, one for each run, e.g. ``surface=["Sb-R", "Smooth"]``.
         Runs with the same labels make one curve.
 
     Returns
     -------
     xarray.Dataset
         On dim ``sliding_speed``: ``segments`` that were evaluated, ``segments_oscillating`` among
-        them, ``waveform`` and ``regularity`` (the most frequent of those where more than half of
-        the segments that were decided oscillate, else smooth sliding, or "not decided" where most
-        are not), there means over those and ``_std`` of ``drop``, ``dominant_wavelength`` [m] (of
-        the spectrum), ``recurrence_distance`` [m] (between drops), ``dominant_frequency`` [Hz],
-        ``fall_share``, ``harmonic_content``, ``period_scatter``, ``oscillating_time_share``, and
-        of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates;
-        ``rig_swing`` and ``rig_wave`` (text): what repeats with each turn of the rig, and is no
-        stick-slip.
-        Segments whose oscillation is a resonance of the rig, seen in one run or over all, count as
-        smooth. Attributes ``scaling_exponent``, ``scaling_error``, ``scaling`` and, of a resonance,
-        ``resonance_frequency_Hz``. With `labels` all that is over these dims, too
-        (`joined_curves`), and the attributes are variables over them.
+        them, ``waveform`` and ``regularity`` (the most frequent ones if more than half of the
+        decided segments oscillate, else smooth sliding, or "not decided" if most are not), means
+        over the oscillating segments and ``_std`` of ``drop``, ``dominant_wavelength`` [m] (of the
+        spectrum), ``recurrence_distance`` [m] (between drops), ``dominant_frequency`` [Hz],
+        ``fall_share``, ``harmonic_content``, ``period_scatter``, ``oscillating_time_share``, and,
+        over all segments, ``oscillation_swing`` (without oscillation the upper limit of an
+        undetected one); ``rig_swing`` and ``rig_wave`` (text): waves that repeat with each turn of
+        the rig, not stick-slip. Segments whose oscillation is a resonance of the rig, seen in one
+        run or over all, count as smooth. Attributes ``scaling_exponent``, ``scaling_error``,
+        ``scaling`` and, for a resonance, ``resonance_frequency_Hz``. With `labels` all variables
+        are also over these dims (`joined_curves`), and the attributes become variables over them.
 
     Raises
     ------
@@ -118,7 +117,7 @@ def stick_slip_curve(
     kind = np.concatenate([s["waveform"].values for s in slips]).astype(object)
     own = _column(slips, "dominant_frequency")
     named = np.concatenate([[_RESONANCE in str(t) for t in s["instrument"].values] for s in slips])
-    # runs of one speed each show only together that a frequency ignores the speed
+    # only several runs of one speed each together show that a frequency does not depend on speed
     rings = named.astype(bool) | ringing(kind, own, speed)
     kind[rings] = STEADY_SLIDING
     known = (kind != NOT_LOOKED_AT) & (speed > 0)
@@ -150,13 +149,13 @@ _SCALING = {
     "scaling_error": "scaling_error",
     "scaling": "scaling",
     "resonance_frequency_Hz": "resonance_frequency",
-}  # attribute of one curve: variable of several
+}  # attribute of one curve: variable of several curves
 
 
 def _of_several(
     slips: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
 ) -> xr.Dataset:
-    """Return the curve of each combination of labels, side by side."""
+    """Return the curves of all combinations of labels, joined."""
     groups = grouped(slips, labels, "stick_slip_curve")
     curves = [(stick_slip_curve(group, speed_tolerance), key) for group, key in groups]
     joined = joined_curves(curves)
@@ -173,12 +172,12 @@ def _of_several(
 
 
 def one_curve(curve: xr.Dataset) -> xr.Dataset:
-    """Return one place of several curves as `stick_slip_curve` gives it without labels.
+    """Return one of several curves in the form of `stick_slip_curve` without labels.
 
     Parameters
     ----------
     curve
-        Over ``sliding_speed`` alone, cut out of the curves of several systems.
+        Selected from the curves of several systems, only over ``sliding_speed``.
     """
     if "scaling" not in curve:
         return curve
@@ -210,7 +209,7 @@ def _regularity(slip: xr.Dataset) -> np.ndarray:
 
 
 def _repeats(instrument: str) -> str:
-    """Return what is said of the turns of the rig among what is the instrument's."""
+    """Return the part of the ``instrument`` text on waves that repeat with each turn of the rig."""
     return next((part for part in instrument.split("; ") if REPEATS in part), "")
 
 
@@ -226,7 +225,7 @@ def _row(
     decided = int((kind[group] != NOT_CLEAR).sum())
     if moving.size > 0.5 * decided:
         waveform, regularity = _commonest(kind[moving]), _commonest(regular[moving])
-    else:  # what few segments show is not what the contact does
+    else:  # few segments are not representative of the contact
         moving = moving[:0]
         waveform = STEADY_SLIDING if decided >= 0.5 * group.size else NOT_CLEAR
     row = {
@@ -263,10 +262,10 @@ def frequency_scaling(curve: xr.Dataset) -> Scaling:
 
     Notes
     -----
-    Least squares of ln f over ln v, each speed weighted alike but for its number of segments; the
-    error is that of the scatter about the line, by Student's t brought to one standard deviation.
-    Fixed wavelength is said where 1 lies within two errors of n and 0 does not; fixed frequency the
-    other way round; a law in between where neither does.
+    Least squares of ln f over ln v, each speed weighted by its number of segments. The error is
+    from the scatter about the line, scaled by Student's t to one standard deviation. The wavelength
+    is fixed if 1 is within two errors of n and 0 is not; the frequency is fixed in the opposite
+    case; neither is fixed if neither is within two errors.
     """
     nothing = Scaling(np.nan, np.nan, 0, "not known: nothing oscillates at three speeds or more")
     if "dominant_frequency" not in curve:

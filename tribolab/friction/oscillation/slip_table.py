@@ -12,7 +12,7 @@ from tribolab.friction.oscillation.examine import Examined
 from tribolab.friction.oscillation.regularity import scatter
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT
 
-# what is said of a segment in which nothing oscillates
+# columns that remain for a segment without oscillation
 _OF_NOISE = (
     "false_alarm_probability",
     "peak_prominence",
@@ -41,8 +41,8 @@ def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.nd
     Returns
     -------
     ndarray
-        True where other segments share the frequency within 3 % and the speeds of all of them
-        differ by a factor of two or more (segment).
+        True if other segments share the frequency within 3 % and their speeds differ by a factor of
+        two or more (segment).
 
     Examples
     --------
@@ -63,7 +63,7 @@ def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.nd
 
 
 class SlipRow(NamedTuple):
-    """Numbers of one segment; see `tribolab.friction.oscillation.stick_slip` for each."""
+    """Results of one segment; see `tribolab.friction.oscillation.stick_slip` for each."""
 
     dominant_frequency: float
     dominant_frequency_sem: float
@@ -107,13 +107,13 @@ def class_of(examined: Examined | str) -> str:
 
 
 def ranked(examined: Examined) -> list[tuple[str, float]]:
-    """Return the classes with their probabilities, the most probable first, claimed or not."""
+    """Return the classes with their probabilities, the most probable first."""
     probability = examined.probability
     return [(CLASSES[k], float(probability[k])) for k in np.argsort(-probability)]
 
 
 def class_table(examined: list[Examined | str]) -> np.ndarray:
-    """Probability of each class (segment, class)."""
+    """Return the probability of each class (segment, class)."""
     nothing = np.full(len(CLASSES), np.nan)
     rows = [nothing if isinstance(e, str) else e.probability for e in examined]
     return np.array(rows).reshape(len(examined), len(CLASSES))
@@ -173,7 +173,7 @@ def _row(e: Examined, speed: float, load: float) -> SlipRow:
 
 
 def oscillates(seen: Examined | str) -> TypeGuard[Examined]:
-    """Whether a segment has a significant oscillation."""
+    """Return whether a segment has a significant oscillation."""
     return class_of(seen) in CLASSES[1:]
 
 
@@ -184,14 +184,14 @@ def _count(seen: Examined | str) -> int:
 def slip_columns(
     examined: list[Examined | str], speed: np.ndarray, loads: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Columns (segment): numbers, and the class and method as text."""
+    """Return columns (segment): numbers, and the class and method as text."""
     nothing = SlipRow(*[np.nan] * len(SlipRow._fields))
     rows = [
         nothing if isinstance(e, str) else _row(e, v, n)
         for e, v, n in zip(examined, speed, loads, strict=True)
     ]
     kinds = [class_of(e) for e in examined]
-    # where nothing oscillates, the turns of the noise are neither drops nor periods
+    # without oscillation, turning points of the noise are neither drops nor periods
     rows = [
         nothing._replace(**{name: getattr(row, name) for name in _OF_NOISE})
         if kind in (CLASSES[0], NOT_CLEAR)
@@ -209,12 +209,12 @@ def slip_columns(
 
 
 def line_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
-    """All significant oscillations of the segments, on (segment, line), the strongest first.
+    """Return all significant oscillations on (segment, line), the strongest first.
 
     Parameters
     ----------
     examined, speed
-        What was seen, and the sliding speed [m/s] (segment).
+        Results of `examine_record`, and the sliding speed [m/s] (segment).
     """
     lines = [e.lines if oscillates(e) else () for e in examined]
     columns = {name: np.full((len(examined), limits.MAX_LINES.value), np.nan) for name in _LINE}
@@ -231,18 +231,18 @@ _LINE = ("line_frequency", "line_wavelength", "line_swing", "line_false_alarm_pr
 
 
 def spectra_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
-    """All spectra on one logarithmic grid of frequency, and of inverse wavelength."""
+    """Return all spectra on one logarithmic grid of frequency, and of inverse wavelength."""
     names = {"psd": "power", "psd_background": "background", "psd_significant": "level"}
     seen = [None if isinstance(e, str) else e.oscillation for e in examined]
     data = {}
     frequency = _grid([o.bands for o in seen if o is not None])
     for name, field in names.items():
-        rows = [_on(frequency, o.bands, getattr(o, field)) if o else None for o in seen]
+        rows = [_interpolated(frequency, o.bands, getattr(o, field)) if o else None for o in seen]
         data[name] = ("segment", "frequency"), _stack(rows, frequency.size)
     places = [o.bands / v if o and v > 0 else None for o, v in zip(seen, speed, strict=True)]
     inverse = _grid([place for place in places if place is not None])
     rows = [
-        None if place is None or o is None else _on(inverse, place, v * o.power)
+        None if place is None or o is None else _interpolated(inverse, place, v * o.power)
         for o, place, v in zip(seen, places, speed, strict=True)
     ]
     data["distance_psd"] = ("segment", "inverse_wavelength"), _stack(rows, inverse.size)
@@ -257,7 +257,7 @@ def _grid(axes: list[np.ndarray]) -> np.ndarray:
     return 10 ** (np.arange(first, last + 1) / limits.BANDS_PER_DECADE.value)
 
 
-def _on(grid: np.ndarray, axis: np.ndarray, power: np.ndarray) -> np.ndarray:
+def _interpolated(grid: np.ndarray, axis: np.ndarray, power: np.ndarray) -> np.ndarray:
     """Interpolate a spectrum to the grid in logarithms; NaN beyond its ends."""
     log = np.log(np.maximum(power, 1e-300))
     return np.exp(np.interp(np.log(grid), np.log(axis), log, left=np.nan, right=np.nan))
@@ -269,7 +269,7 @@ def _stack(rows: list[np.ndarray | None], size: int) -> np.ndarray:
 
 
 def event_list(examined: list[Examined | str]) -> xr.Dataset:
-    """All events of a run in temporal order."""
+    """Return all events of a run in temporal order."""
     seen = [
         (number, e.events)
         for number, e in enumerate(examined)
