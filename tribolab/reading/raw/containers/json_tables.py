@@ -23,6 +23,7 @@ _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
 _MIN_NUMBERS = 3  # smallest length of a column
 _ROWS = 5  # records inspected
 _DEEPEST = 12  # deepest nesting searched
+_MOST_PARTS = 3_000_000  # lists and objects; each takes a hundred bytes
 _MOST_SETTINGS = 60
 _MAX_SETTING = 200  # characters of a setting
 _SET = re.compile(r"set[_ -]?(?:point)?s?|target|soll\w*|commanded|programmed", re.IGNORECASE)
@@ -95,6 +96,8 @@ def read_json(path: Path) -> RawFile:
 
 
 def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
+    if text.count("[") + text.count("{") > _MOST_PARTS:
+        return [], [], {}
     try:
         document = json.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError):
@@ -129,8 +132,7 @@ def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int)
         return []
     said: list[Setting] = []
     for inner in part:
-        plain = isinstance(inner, list) and not isinstance(next(iter(inner), 0), dict | list)
-        if isinstance(inner, dict | list) and not plain:  # a matrix has millions of rows
+        if isinstance(inner, dict | list):
             said += _walk(inner, key, tables, depth + 1)
     return said
 
