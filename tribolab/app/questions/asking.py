@@ -86,10 +86,7 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     if draft.kind == "table" and (alone or draft.unsaid):
         return _ask_for_pitch(draft, ask, say)
     if draft.kind == "scan":
-        for name, words in _SCAN.items():
-            question = f"which column is {words}? (its number; {_NONE} for none)"
-            draft = _ask_for(draft, (name,), question, ask, say)
-        return draft
+        return _ask_about_scan(draft, ask, say)
     question = "which column is the time? (its number; or the rate of the rows, such as 100 Hz; "
     question += f"{_NONE})"
     if draft.understood and not draft.understood.rate_pattern:  # else the file states it
@@ -110,6 +107,37 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     if not _has_speed_from_settings(draft):
         draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")
     return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
+
+
+def _ask_about_scan(draft: Draft, ask: Ask, say: Say) -> Draft:
+    """Ask for the columns of a scan that are not known, and at once for the units of the others."""
+    for name, words in _SCAN.items():
+        held = _column_of_any(draft, (name,))
+        known = held is not None and not (held.guessed or held.fill_in)
+        if held is None or (not known and (held.counted or held.file_unit)):
+            question = f"which column is {words}? (its number; {_NONE} for none)"
+            draft = _ask_for(draft, (name,), question, ask, say)
+    doubtful = {
+        name: held for name in _SCAN if (held := _column_of_any(draft, (name,))) and held.guessed
+    }
+    if not doubtful:
+        return draft
+    guess = ", ".join(_unit_guess(column, name) for name, column in doubtful.items())
+    places = " and ".join(str(column.place) for column in doubtful.values())
+    question = f"in which units do columns {places} write {' and '.join(doubtful)}?"
+    if len(doubtful) == 1:
+        question = f"in which unit does column {places} write it?"
+    while True:
+        units = [unit for unit in re.split(r"[,;\s]+", ask(question, guess)) if unit]
+        units = units * len(doubtful) if len(units) == 1 else units
+        try:
+            for (name, column), unit in zip(doubtful.items(), units, strict=True):
+                draft = corrected(draft, name, column.place, unit)
+            return draft
+        except TribolabError as error:
+            say(str(error.what))
+        except ValueError:
+            say(f"as many units as columns are wanted, e.g. {guess}")
 
 
 def _has_speed_from_settings(draft: Draft) -> bool:
