@@ -131,7 +131,7 @@ def test_a_torque_with_a_radius_is_a_force_and_a_load_may_be_a_weight(tmp_path, 
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},60,{100 + i % 2}\n" for i in range(400))
     file.write_text("Time [s],M9 [mN m],Disc [rpm],Q [V]\n" + rows)
-    done = describe(file.name, "--ask", typed="\n2\n2 kg\n\n10 mm\n")
+    done = describe(file.name, "--ask", typed="2\n2 kg\n10 mm\n")
     assert done.exit_code == 0, done.output
     run = tl.read(file, "ring.toml")
     np.testing.assert_allclose(run.friction_force[:3], [0.4, 0.5, 0.6])
@@ -159,7 +159,7 @@ def test_an_angle_with_a_radius_is_a_way(tmp_path, monkeypatch):
     file = tmp_path / "table.txt"
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},{i / 100:.2f}\n" for i in range(400))
     file.write_text("Time [s],Friction force [mN],E1\n" + rows)
-    done = describe(file.name, "--ask", typed="\n\n2 N\n3\nturn\n10 mm\n")
+    done = describe(file.name, "--ask", typed="2 N\n3\nturn\n10 mm\n")
     assert done.exit_code == 0, done.output
     run = tl.read(file, "table.toml")
     np.testing.assert_allclose(np.diff(run.position), 2 * np.pi * 1e-4, rtol=1e-3)
@@ -188,12 +188,12 @@ def test_loads_that_add_up_pulses_of_a_turn_and_a_weight_on_a_lever(tmp_path, mo
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.1f},{i},3,{4 + i % 2},{6 - i % 2}\n" for i in range(400))
     file.write_text("Time [s],P1,Friction force [N],C1,C2\n" + rows)
-    done = describe(file.name, "--ask", typed="\n\n4+5\nN\nN\n2\n1/100 turn\n10 mm\n")
+    done = describe(file.name, "--ask", typed="4+5\nN\nN\n2\n1/100 turn\n10 mm\n")
     assert done.exit_code == 0, done.output
     run = tl.read(file, "ring.toml")
     np.testing.assert_allclose(run.normal_force, 10)
     np.testing.assert_allclose(np.diff(run.position), 2 * np.pi * 1e-4, rtol=1e-6)
-    typed = "\n\n10 x 5 kg\n2\n1/100 turn\n10 mm\n"
+    typed = "10 x 5 kg\n2\n1/100 turn\n10 mm\n"
     done = describe(file.name, "--ask", "--force", typed=typed)
     assert done.exit_code == 0, done.output
     np.testing.assert_allclose(tl.read(file, "ring.toml").normal_force, 490.333, rtol=1e-5)
@@ -263,7 +263,7 @@ def test_an_answer_stays_where_another_is_not_known_and_may_have_a_comma(tmp_pat
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},60\n" for i in range(200))
     file.write_text("Time [s],Torque [mN m],Rotation [rpm]\n" + rows)
-    done = describe(file.name, "--ask", typed="\n\n46,0 N\n\n-\n")
+    done = describe(file.name, "--ask", typed="\n46,0 N\n-\n")
     assert "formula = \"'46.0 N'\"" in Path("ring.toml").read_text("utf-8"), done.output
     assert "a torque: with the radius at which it acts" in done.output
 
@@ -279,7 +279,7 @@ def test_strokes_may_be_typed_and_one_of_both_is_not_enough(tmp_path, monkeypatc
     force = 3 * np.tanh(30 * np.cos(4 * np.pi * time))
     columns = {"Time [s]": time, "Friction force [N]": force, "Load [N]": np.full(time.size, 15.0)}
     file = write(tmp_path / "pin.csv", columns)
-    done = describe(file.name, "--ask", typed="\n\n\n2 Hz\nstroke 8 mm, 2 Hz\n\n")
+    done = describe(file.name, "--ask", typed="2 Hz\nstroke 8 mm, 2 Hz\n\n")
     assert (done.exit_code, done.stderr) == (0, "")
     assert "strokes need a length, such as 8 mm, too" in done.stdout
     assert done.stdout.count("sliding_velocity m/s") == 2  # once a row, once as a line of blocks
@@ -296,10 +296,10 @@ def test_turns_may_be_typed_with_the_radius_of_their_track(tmp_path, monkeypatch
     time = np.arange(0, 20, 0.05)
     lines = "".join(f"{t:.2f}\t{3 + 0.01 * np.sin(t):.4f}\n" for t in time)
     Path("disc.txt").write_text(f"Load: 15 N\nTime [s]\tFriction force [N]\n{lines}", "utf-8")
-    typed = "\n\n\n8 rpm\n8\n15,5\n8 rpm at 20 mm radius\n\n"
+    typed = "8 rpm\n8\n15,5\n8 rpm at 20 mm radius\n\n"
     done = describe("disc.txt", "--ask", typed=typed)
     assert (done.exit_code, done.stderr) == (0, "")
-    assert "for none) [15 N]:" in done.stdout  # what the file states is the default
+    assert "normal force? (" not in done.stdout  # the file states it
     assert "turns need the radius of their track: 8 rpm at 20 mm radius" in done.stdout
     assert "there is no column '8'" in done.stdout
     assert "15,5 has no unit: type it with one, such as 6 mm/min" in done.stdout

@@ -151,7 +151,7 @@ def test_a_drafted_description_is_named_where_the_raw_file_is(tmp_path, monkeypa
     refused = CliRunner().invoke(cli.app, ["run", "odd.csv"])
     assert refused.exit_code == 3 and "tribolab info odd.csv --write" in refused.output
     assert "no segment" not in refused.output  # nothing was read in which one could be
-    asked = CliRunner().invoke(cli.app, ["dialect", "odd.csv", "--ask"], input="\n3\nN\n\n\n")
+    asked = CliRunner().invoke(cli.app, ["dialect", "odd.csv", "--ask"], input="3\nN\n")
     assert "next:  tribolab run odd.csv --instrument odd.toml" in asked.output.replace(
         f"{tmp_path}/", ""
     )

@@ -246,18 +246,22 @@ def _ask_amount(
 def _ask_for(
     draft: Draft, names: Sequence[str], question: str, ask: Ask, say: Say, amount: str = ""
 ) -> Draft:
-    """Ask which column contains one of several quantities, or for an amount instead."""
+    """Ask which column contains one of several quantities, or for an amount instead, if open."""
     held = _column_of_any(draft, names)
-    said, stated = _said_amount(draft, amount), _stated_amount(draft, amount)
+    if held is not None and held.quantity in names and not (held.guessed or held.fill_in):
+        return draft  # nothing is open
+    said = _said_amount(draft, amount)
+    if held is None and not said and _states_amount(draft, amount):
+        return draft
     lines, value = ("", None) if held or said else _may_say(draft, amount)
     likely = amount_of(value)
     if lines:
         question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
+    # which column it is can be seen above: only its unit is open
+    typed = str(held.place) if held and held.fill_in and not held.guessed else ""
     while True:
         usual = _YES[0] if likely else _NONE
-        typed = ask(question, str(held.place) if held else said or stated or usual).strip()
-        if stated and typed == stated:
-            return draft
+        typed = typed or ask(question, str(held.place) if held else said or usual).strip()
         if typed == _NONE:
             return draft if held is None else _remove_quantities(draft, names)
         if value is not None and typed.lower() in (*_YES, likely):
@@ -282,6 +286,7 @@ def _ask_for(
             )
             return _ask_zero(draft, column, worth, ask, say)
         except TribolabError as error:
+            typed = ""
             say(str(error.what))
 
 
@@ -353,15 +358,15 @@ def _said_amount(draft: Draft, amount: str) -> str:
     )
 
 
-def _stated_amount(draft: Draft, amount: str) -> str:
-    """Return the load that the file states with certainty; "" if it is not one number."""
+def _states_amount(draft: Draft, amount: str) -> bool:
+    """Whether the file states the load as one number, with certainty."""
     layout, understood = draft.layout, draft.understood
     if amount != "load" or layout is None or understood is None or understood.load:
-        return ""
+        return False
     follows = what_follows(layout, understood)
     formulas = {each.formula for each in follows.formulas if each.quantity == "normal_force"}
     told = [value for value in follows.values if {value.name} == formulas]
-    return amount_of(told[0]) if told and not told[0].guess else ""
+    return bool(told) and not told[0].guess
 
 
 def _confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
