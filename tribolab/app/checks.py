@@ -281,7 +281,7 @@ def _belongs(results: Path, scan: Path) -> bool:
 
 
 def code_of(checked: Sequence[Checked], fail_on: str) -> int:
-    """Exit code: 3 if a file is unreadable or a check crashed, 1 from `fail_on` upwards, else 0."""
+    """Return exit code 3 for unreadable files or crashed checks, 1 from `fail_on` on, else 0."""
     code = exit_code({c.status for c in checked if not c.error}, fail_on)
     return _UNREADABLE if any(c.error for c in checked) else code
 

@@ -413,7 +413,7 @@ def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
     folder
         Folder of the results of `tribolab.paper.reproduce.reproduce`.
     table
-        Published numbers beside computed ones.
+        Published and computed numbers.
     """
     # imported late for a quick start
     from tribolab.studies.tally import tell_statuses

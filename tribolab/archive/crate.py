@@ -46,7 +46,7 @@ def crate_metadata(
     facts: Mapping[str, CrateFacts],
     people: People,
 ) -> Json:
-    """RO-Crate metadata of a deposit, as JSON-LD.
+    """Return the RO-Crate metadata of a deposit, as JSON-LD.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def crate_metadata(
 def data_package(
     report: Json, tables: Mapping[str, pd.DataFrame], facts: Mapping[str, CrateFacts]
 ) -> Json:
-    """Frictionless description of the tables, by their names in the deposit."""
+    """Return the Frictionless description of the tables, by their names in the deposit."""
     return {
         "profile": "tabular-data-package",
         "name": "tribolab-results",
@@ -172,7 +172,7 @@ def _description(report: Json, campaign: Campaign) -> str:
 
 
 def _instruments(report: Json, campaign: Campaign) -> list[Json]:
-    """Instruments, with serial number and calibration if stated."""
+    """Return the instruments, with serial number and calibration if stated."""
     stated = campaign.calibration
     due = None
     if stated.date is not None and stated.interval is not None:
@@ -255,7 +255,7 @@ def _people(people: People) -> tuple[Json, Json, Json]:
 def _actions(
     items: Sequence[Item], instruments: Sequence[Json], author: Json, made_at: str
 ) -> list[Json]:
-    """Actions of the deposit: the measurement created raw files, the analysis the results."""
+    """Return the measurement that created the raw files, and the analysis of the results."""
     raw = [item for item in items if item.description in ("A raw file", "A scan")]
     settings = [item for item in items if item.kind == "application/toml"]
     results = [item for item in items if item not in raw and item not in settings]

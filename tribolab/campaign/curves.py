@@ -250,7 +250,7 @@ def _temperature(frictions: Sequence[xr.Dataset]) -> tuple[float | None, float]:
 
 
 def _with_rolling(curve: xr.Dataset, ratio: float | None) -> xr.Dataset:
-    """Return a curve at one slide-roll ratio with its entrainment speeds; without one as it is."""
+    """Return a curve with entrainment speeds, if its slide-roll ratio is given."""
     if ratio is None:
         return curve
     rolling = curve["sliding_speed"].values / ratio
@@ -269,7 +269,7 @@ def _budget_curve(
 
 
 def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
-    """Stated uncertainties of the model inputs; the largest of several runs."""
+    """Return the stated uncertainties of the model inputs; the largest of several runs."""
     # imported late for a quick start
     from tribolab.metrology.budget import known_uncertainties
 
@@ -305,7 +305,7 @@ def _segments_at_load(part: Parts, own: _Levels) -> Parts:
 
 
 def _load_from(runs: Iterable[RunOutcome]) -> str:
-    """Source of the load of a curve: stated, if it is stated for one run."""
+    """Return the source of the load of a curve: stated, if it is stated for one run."""
     known = {LOAD_MEASURED if _measured_levels(run) else run.load_from for run in runs}
     return next((s for s in (LOAD_STATED, LOAD_MEASURED, LOAD_VARIES) if s in known), "")
 

@@ -52,7 +52,7 @@ class CalibrationTerms:
 def calibration_terms(
     condition: MatchedRuns, first: Folder | None, second: Folder | None
 ) -> CalibrationTerms:
-    """Calibration errors of the differences in a condition that scatter does not include.
+    """Return calibration errors of the differences in a condition that scatter does not include.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def _rows(row: np.ndarray, size: int) -> np.ndarray:
 
 
 def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
-    """Instrument and calibration of some runs."""
+    """Return the instrument and calibration of some runs."""
     stated = None if folder.campaign is None else folder.campaign.calibration
     which = "" if stated is None else f"{stated.date} {stated.serial} {stated.certificate}"
     names = {str(run.get("instrument", "")) for run in folder.done if run["name"] in runs}

@@ -39,7 +39,7 @@ def _settings(first: Folder, second: Folder) -> list[Change]:
 
 
 def _flat_settings(folder: Folder) -> dict[str, str]:
-    """Every key that the campaign file sets or leaves at its default, in SI."""
+    """Return every key that the campaign file sets or leaves at its default, in SI."""
     if folder.campaign is None:
         return {"the campaign file": f"as of {folder.report['campaign']['sha256'][:12]}"}
     return dict(_flat(folder.campaign.model_dump(mode="json"), ""))

@@ -191,7 +191,7 @@ def _all_same(condition: MatchedRuns, first: Side, second: Side) -> bool:
 
 
 def _points_of_same(condition: MatchedRuns) -> pd.DataFrame:
-    """Rows of a condition with the same raw data on both sides, without a test."""
+    """Return the rows of a condition with equal raw data on both sides, without a test."""
     first, second = (np.nanmean(values, axis=0) for values in (condition.first, condition.second))
     return _rows(
         condition,

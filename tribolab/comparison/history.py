@@ -79,7 +79,7 @@ class InstrumentHistory:
         return self.baseline_points + np.flatnonzero(self.chart.any_signal)
 
     def table(self) -> pd.DataFrame:
-        """Table of the points, with limits and the rules by which they signal."""
+        """Return the table of the points, with limits and the rules by which they signal."""
         count, start = self.values.size, self.baseline_points
         rules = np.full(count, "", dtype=object)
         columns = {name: np.full(count, np.nan) for name in _COLUMNS}
@@ -135,7 +135,7 @@ class History:
         return tuple(chart for chart in self.charts if chart.signals.size)
 
     def table(self) -> pd.DataFrame:
-        """Table of the points of all charts."""
+        """Return the table of the points of all charts."""
         rows = [chart.table() for chart in self.charts]
         return pd.concat(rows, ignore_index=True) if rows else pd.DataFrame()
 
@@ -146,7 +146,7 @@ def history(
     rules: Sequence[str] = DEFAULT_RULES,
     baseline: int | None = None,
 ) -> History:
-    """Control charts of instruments over the results folders of many campaigns.
+    """Return the control charts of instruments over the results folders of many campaigns.
 
     Parameters
     ----------

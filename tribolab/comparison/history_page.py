@@ -41,7 +41,7 @@ def history_verdict(told: History) -> str:
 
 
 def _name(chart: InstrumentHistory, told: History) -> str:
-    """Name of the quantity, with the instrument if there are several."""
+    """Return the name of the quantity, with the instrument if there are several."""
     several = len({other.instrument for other in told.charts}) > 1
     return f"{chart.instrument}: {chart.quantity}" if several else chart.quantity
 
@@ -111,7 +111,7 @@ def _summary(told: History) -> Part:
 
 
 def _chance_text(told: History) -> str:
-    """Text on how often any chart would signal without a change."""
+    """Return text on how often any chart would signal without a change."""
     judged = [chart for chart in told.charts if chart.chart is not None]
     if not judged:
         return ""

@@ -22,7 +22,7 @@ _KEYS = ("operator", "mount", "day", "specimen")
 
 
 def labelled_segments(place: str | Path) -> pd.DataFrame:
-    """Table of friction of a campaign, with the labels of each row's run.
+    """Return the table of friction of a campaign, with the labels of each row's run.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def labelled_segments(place: str | Path) -> pd.DataFrame:
 
 
 def labels_of_runs(folder: Folder, campaign: Campaign | None) -> pd.DataFrame:
-    """Labels of the runs of a results folder, by the name of the run."""
+    """Return the labels of the runs of a results folder, by the name of the run."""
     rows = {}
     for run in folder.done:
         entry = _entry_of(campaign, run) if campaign is not None else None

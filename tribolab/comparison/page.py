@@ -74,7 +74,7 @@ class Part:
 
 
 def cells(row: Iterable[object], digits: int = 3) -> list[PageCell]:
-    """Cells of a row: numbers rounded to so many digits, words unchanged.
+    """Return the cells of a row: numbers rounded to so many digits, words unchanged.
 
     Examples
     --------

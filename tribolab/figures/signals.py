@@ -57,7 +57,7 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
     Returns
     -------
     Signal
-        The ratio is NaN where the contact is not loaded.
+        The ratio is NaN if the contact is not loaded.
 
     Raises
     ------

@@ -113,7 +113,7 @@ _WORDS = {
 
 
 def paper_sections() -> list[Section]:
-    """Sections of the page: the summary, those of the paper, and the sources."""
+    """Return the sections of the page: the summary, those of the paper, and the sources."""
     return [
         Section("summary", "Summary", "paper/summary.html.j2"),
         Section("numbers", "All published numbers", "paper/numbers.html.j2"),
@@ -129,7 +129,7 @@ def paper_document(
     laboratory: Laboratory,
     sources: Sequence[tuple[str, str, int]],
 ) -> Json:
-    """Content of the page as plain data: ``paper.json``.
+    """Return the content of the page as plain data: ``paper.json``.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def _row(record: Json, known: Published) -> Json:
 
 
 def _difference(record: Json, known: Published) -> str:
-    """Text on the difference of a number without relative difference; else ""."""
+    """Return text on the difference of a number without relative difference; else ""."""
     if known.relation.startswith(BOUNDS) and record["computed"]:
         if record["status"] in (REPRODUCED, BY_CONSTRUCTION):
             return "within the bound"

@@ -26,7 +26,7 @@ def _listed(parts: Iterable[str]) -> str:
 
 
 def paper_spectra(data: PaperData) -> FigureAndText:
-    """Stand-in spectra."""
+    """Draw the stand-in spectra."""
     psds = data.dry("psd")
     said = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.4g} µm, slope {rms_slope(psd):.3g}"
@@ -36,7 +36,7 @@ def paper_spectra(data: PaperData) -> FigureAndText:
 
 
 def scanned_spectra(data: PaperData) -> FigureAndText:
-    """Spectra from the analysis of the simulated profiles."""
+    """Draw spectra from the analysis of the simulated profiles."""
     psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
     said = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"
@@ -46,7 +46,7 @@ def scanned_spectra(data: PaperData) -> FigureAndText:
 
 
 def paper_contact_area(data: PaperData) -> FigureAndText:
-    """A/A0 over pressure without adhesion."""
+    """Draw A/A0 over pressure without adhesion."""
     loads = data.dry("loads")
     said = _listed(
         f"{name}: A/A0 {float(contact.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
@@ -58,7 +58,7 @@ def paper_contact_area(data: PaperData) -> FigureAndText:
 
 
 def paper_effective_work(data: PaperData) -> FigureAndText:
-    """gamma_eff/gamma_0 over magnification."""
+    """Draw gamma_eff/gamma_0 over magnification."""
     works = data.dry("effective_work")
     said = _listed(
         f"{name}: "
@@ -77,7 +77,7 @@ def _ends(line: xr.DataArray) -> str:
 
 
 def paper_adhesive_area(data: PaperData) -> FigureAndText:
-    """A/A0 over pressure with adhesion."""
+    """Draw A/A0 over pressure with adhesion."""
     loads = data.dry("loads")
     said = _listed(
         f"{name}: "
@@ -103,20 +103,20 @@ def _friction_of(curves: Iterable[xr.Dataset]) -> str:
 
 
 def dry_friction(data: PaperData) -> FigureAndText:
-    """Dry mu(v)."""
+    """Draw dry mu(v)."""
     measured = [data.measured(name, "dry") for name in SURFACES]
     return plot.stribeck(measured, surfaces=SURFACES, errors="std"), _friction_of(measured)
 
 
 def paper_modulus(data: PaperData) -> FigureAndText:
-    """Stand-in modulus."""
+    """Draw the stand-in modulus."""
     table = modulus_table()
     ends = (f"{float(table.storage_modulus[end]):.3g} Pa" for end in (0, -1))
     return plot.modulus(table), f"Storage modulus from {' to '.join(ends)}."
 
 
 def paper_viscoelastic(data: PaperData) -> FigureAndText:
-    """mu_visc(v)."""
+    """Draw mu_visc(v)."""
     rubbers = data.dry("rubber")
     rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
     said = _listed(
@@ -127,7 +127,7 @@ def paper_viscoelastic(data: PaperData) -> FigureAndText:
 
 
 def dry_shear_stress(data: PaperData) -> FigureAndText:
-    """sigma_f(v) = mu sigma_0 A_0/A, from simulated friction and computed areas."""
+    """Draw sigma_f(v) = mu sigma_0 A_0/A, from simulated friction and computed areas."""
     stresses = {}
     for name in SURFACES:
         loads = data.read("dry", name, "loads").isel(load=0)
@@ -166,29 +166,29 @@ def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> FigureAndT
 
 
 def dry_traces(data: PaperData) -> FigureAndText:
-    """Dry traces of Smooth and Sb-R."""
+    """Draw dry traces of Smooth and Sb-R."""
     return _traces(data, [(n, "dry", v) for n in ("Sb-R", "Smooth") for v in (1e-6, 3e-6)])
 
 
 def wet_traces(data: PaperData) -> FigureAndText:
-    """Traces in glycerol."""
+    """Draw traces in glycerol."""
     wanted = [("Sb-R", "glycerol", 1e-6), *(("Smooth", "glycerol", v) for v in (1e-6, 3e-6))]
     return _traces(data, wanted)
 
 
 def rough_dry_and_wet(data: PaperData) -> FigureAndText:
-    """Traces of Sb-R."""
+    """Draw traces of Sb-R."""
     return _traces(data, [("Sb-R", "glycerol", 1e-6), ("Sb-R", "dry", 1e-6)])
 
 
 def smooth_dry_and_wet(data: PaperData) -> FigureAndText:
-    """Traces of Smooth, and of Sb-R in glycerol."""
+    """Draw traces of Smooth, and of Sb-R in glycerol."""
     wanted = [("Sb-R", "glycerol"), ("Smooth", "glycerol"), ("Smooth", "dry")]
     return _traces(data, [(*stroke, 1e-6) for stroke in wanted])
 
 
 def both_rough(data: PaperData) -> FigureAndText:
-    """Stribeck curves of both rough surfaces at the lowest load, with the dry ones."""
+    """Draw Stribeck curves of both rough surfaces at the lowest load, with the dry ones."""
     force = data.forces[0]
     measured = [data.measured(name, medium) for name in ROUGH for medium in ("glycerol", "dry")]
     models = [data.model(name, force) for name in ROUGH]
@@ -196,7 +196,7 @@ def both_rough(data: PaperData) -> FigureAndText:
 
 
 def all_loads(data: PaperData, name: str) -> FigureAndText:
-    """Stribeck curves of a surface."""
+    """Draw Stribeck curves of a surface."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     models = [data.model(name, force) for force in data.forces]
     off = [
@@ -215,7 +215,7 @@ def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
 
 
 def paper_shear_stress(data: PaperData) -> FigureAndText:
-    """sigma_f over load, as fitted and corrected."""
+    """Draw sigma_f over load, as fitted and corrected."""
     said = _listed(
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
         f"{fit['shear_stress_Pa'] / 1e6:.3g} MPa, "
@@ -240,7 +240,7 @@ def smooth_and_theory(data: PaperData) -> FigureAndText:
 
 
 def separation(data: PaperData) -> FigureAndText:
-    """p_cont over separation."""
+    """Draw p_cont over separation."""
     tables = data.dry("separation")
     said = _listed(
         f"{name}: falls by a factor e in "
@@ -252,7 +252,7 @@ def separation(data: PaperData) -> FigureAndText:
 
 
 def factors(data: PaperData) -> FigureAndText:
-    """Flow and friction factors."""
+    """Draw flow and friction factors."""
     factors = {name: data.read("wet", name, "factors") for name in SURFACES}
     closed = [
         d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in factors.values()
@@ -262,7 +262,7 @@ def factors(data: PaperData) -> FigureAndText:
 
 
 def paper_friction_factor_effect(data: PaperData) -> FigureAndText:
-    """mu(v) at the highest load with and without friction factors."""
+    """Draw mu(v) at the highest load with and without friction factors."""
     force = data.forces[-1]
     pairs = {name: data.model(name, force) for name in ROUGH}
     said = _listed(
@@ -281,7 +281,7 @@ def _largest_rise(curve: xr.Dataset) -> str:
 
 
 def profiles(data: PaperData, name: str) -> FigureAndText:
-    """Profiles across the contact of a surface."""
+    """Draw profiles across the contact of a surface."""
     across = data.read("wet", name, "profiles")
     said = _listed(
         f"{speed_text(float(v))}: smallest separation "
@@ -298,7 +298,7 @@ def profiles(data: PaperData, name: str) -> FigureAndText:
 
 
 def bars(data: PaperData, name: str) -> FigureAndText:
-    """Error bars of a surface."""
+    """Draw error bars of a surface."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     smallest, largest = (
         end(float(end(c.friction_coefficient_std.values)) for c in measured) for end in (min, max)

@@ -70,7 +70,7 @@ def _judged(name: str, spectrum: SelfAffine) -> SteepSpectrum:
 
 
 def _half(spectrum: SelfAffine, whole: float) -> float:
-    """Wavenumber [1/m] below which half of the mean square slope is contained."""
+    """Return the wavenumber [1/m] below which half of the mean square slope is contained."""
 
     def missing(log_q: float) -> float:
         return moment(replace(spectrum, high=math.exp(log_q)), _SLOPE) / whole - 0.5

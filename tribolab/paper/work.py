@@ -104,7 +104,7 @@ def _dry(task: PaperTask) -> GroupsAndRows:
 
 
 def _spectrum(task: PaperTask) -> GroupsAndRows:
-    """Spectrum of the simulated profiles, extrapolated as for any surface."""
+    """Return the spectrum of the simulated profiles, extrapolated as for any surface."""
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
     checked = usable_scans(task.scans)

@@ -307,7 +307,7 @@ def _write_facts(
 
 
 def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str:
-    """Content of the campaign file for these surfaces and conditions."""
+    """Return the content of the campaign file for these surfaces and conditions."""
     s = xu2026.system
     parts = [
         "# Simulated by the virtual rig of tribolab; the truth lies in truth/.\n"

@@ -20,7 +20,7 @@ FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments hav
 
 
 def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> bytes:
-    r"""Text of numbers with fixed decimals, one row per line.
+    r"""Return text of numbers with fixed decimals, one row per line.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
 
 
 def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Content of a force log as the logger writes it."""
+    """Return the content of a force log as the logger writes it."""
     head = (
         "# Linear slider, force log\n"
         f"# date: {date.isoformat()}\n"
@@ -85,7 +85,7 @@ def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
 
 
 def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Content of a motion log as the table's controller writes it."""
+    """Return the content of a motion log as the table's controller writes it."""
     head = (
         "# Linear slider, motion log\n"
         f"# date: {date.isoformat()}\n"
@@ -148,7 +148,7 @@ def scan_file(
     length: float | None = None,
     results: Mapping[str, float] | None = None,
 ) -> bytes:
-    """Content of a profile as the stylus instrument exports it, in m.
+    """Return the content of a profile as the stylus instrument exports it, in m.
 
     Pitch and length are written to the file, by default the true ones; `results` are the
     instrument's own Ra and Rq, which it does not export by default.

@@ -33,7 +33,7 @@ class DryLaw:
     slope: float = 0.015
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
-        """Friction coefficient at sliding speeds [m/s]."""
+        """Return the friction coefficient at sliding speeds [m/s]."""
         return self.level * (1 + self.slope * np.log10(np.asarray(speed, dtype=float) / 1e-4))
 
 
@@ -63,7 +63,7 @@ class StribeckLaw:
     drag: float
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
-        """Friction coefficient at sliding speeds [m/s]."""
+        """Return the friction coefficient at sliding speeds [m/s]."""
         v = np.asarray(speed, dtype=float)
         solid = self.boundary * np.exp(-((v / self.transition_speed) ** self.exponent))
         return solid + self.drag * (v / 1e-2) ** 0.4
@@ -100,7 +100,7 @@ class StickSlip:
     fade_stop: float = math.inf
 
     def at(self, speed: float) -> tuple[str, float, float]:
-        """Form, wavelength [m] and relative drop at one speed [m/s]."""
+        """Return form, wavelength [m] and relative drop at one speed [m/s]."""
         left = 1.0
         if speed > self.fade_start:
             span = math.log(self.fade_stop / self.fade_start)
@@ -121,7 +121,7 @@ def _film_thickness(speed: float, normal_force: float) -> float:
 
 
 def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | StribeckLaw | MixedLaw:
-    """Friction coefficient against speed for a surface of Xu et al. at a load.
+    """Return the friction law over speed of a surface of Xu et al. at a load.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
 
 
 def stick_slip(surface: str, medium: str) -> StickSlip:
-    """Stick-slip as described in Sec. 6 to 8, for Smooth only.
+    """Return the stick-slip described in Sec. 6 to 8; it occurs for Smooth only.
 
     Dry stick-slip is a sawtooth, equal at 1 and 3 um/s. In glycerol it is rounder and longer, much
     weaker and shorter at 3 than at 1 um/s, and absent at 10 um/s. The paper prints no numbers:

@@ -45,7 +45,7 @@ class MixedLaw:
     friction: tuple[float, ...]
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
-        """Friction coefficient at sliding speeds [m/s]; the boundary limit below the lowest.
+        """Return the friction coefficient at speeds [m/s]; the boundary limit below the lowest.
 
         Raises
         ------
@@ -66,7 +66,7 @@ class MixedLaw:
 
 @functools.cache
 def mixed_law(surface: str, normal_force: float) -> MixedLaw:
-    """Friction law of a rough surface in glycerol with the paper's shear stress at that load.
+    """Return the friction law of a rough surface in glycerol with the paper's shear stress.
 
     sigma_f is interpolated between the paper's loads and constant beyond them.
 

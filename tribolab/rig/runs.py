@@ -32,7 +32,7 @@ from tribolab.units.stamping import stamp
 
 
 def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:
-    """Name of a run and of its files.
+    """Return the name of a run and of its files.
 
     >>> run_name("Sb-R", "glycerol", 31.0, 1)
     'sb-r_glycerol_31N_01'
@@ -168,7 +168,7 @@ def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
 
 
 def _law_parameters(thing: object) -> Json:
-    """Parameters of a law for the record; the name of a bare function."""
+    """Return the parameters of a law for the record; the name of a bare function."""
     values = asdict(thing) if is_dataclass(thing) and not isinstance(thing, type) else {}
     # tables are written separately
     values = {k: v for k, v in values.items() if not isinstance(v, tuple)}
@@ -177,7 +177,7 @@ def _law_parameters(thing: object) -> Json:
 
 
 def _clock_facts(errors: Errors, begin: float, end: float) -> dict[str, float]:
-    """Clock errors, and the constant shift that fits the whole motion log best."""
+    """Return the clock errors, and the constant shift that fits the whole motion log best."""
     middle = motion_clock(np.array([begin, end]), errors).mean()
     return {
         "friction_force_offset_N": errors.friction_force_offset,

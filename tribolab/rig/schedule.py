@@ -57,14 +57,14 @@ class Schedule:
         return self.position[i] + (self.velocity[i] + 0.5 * a * passed) * passed, velocity
 
     def load(self, time: np.ndarray) -> np.ndarray:
-        """Load relative to the set load at each time."""
+        """Return the load relative to the set load at each time."""
         i = self.phase(time)
         part = (time - self.start[i]) / self.duration[i]
         return self.load_start[i] + (self.load_stop[i] - self.load_start[i]) * part
 
 
 def make_schedule(protocol: Protocol) -> Schedule:
-    """Schedule of the phases of a protocol.
+    """Return the schedule of the phases of a protocol.
 
     Examples
     --------

@@ -88,7 +88,7 @@ def read_forces(
     rng: np.random.Generator,
     calibration: Calibration = TRUE,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Friction force and normal force [N] as measured by the force cell at the times [s].
+    """Return friction and normal force [N] as measured by the force cell at times [s].
 
     Mains hum is averaged over the sampling interval, so that a slow logger hardly records it.
     """
@@ -115,7 +115,7 @@ def read_motion(
     errors: Errors,
     rng: np.random.Generator,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Position [m], velocity and set speed [m/s] as recorded by the table's controller."""
+    """Return position [m], velocity and set speed [m/s] as recorded by the table's controller."""
     position, velocity = signals.schedule.motion(time)
     set_speed = signals.schedule.set_speed[signals.schedule.phase(time)]
     noise = rng.standard_normal((3, time.size))

@@ -41,7 +41,7 @@ class StrokeFriction:
     protocol: Protocol
 
     def __call__(self, distance: np.ndarray) -> np.ndarray:
-        """Friction coefficient at distances [m] from the stroke's start."""
+        """Return the friction coefficient at distances [m] from the stroke's start."""
         steady = self.level + self.ripple(distance)
         built = 1 - (1 - np.clip(distance / self.protocol.build_up, 0, 1)) ** 3
         part = np.clip(distance / self.protocol.run_in, 0, 1)
@@ -80,7 +80,7 @@ class Signals:
         return self.normal_force * self.schedule.load(time) * (1 + self.load_error(time))
 
     def friction(self, time: np.ndarray) -> np.ndarray:
-        """Friction coefficient with the sign of the force: positive when the table moves to +x."""
+        """Return the friction coefficient, positive when the table moves to +x."""
         p, plan = self.protocol, self.schedule
         phase = plan.phase(time)
         stroke, moving = plan.stroke[phase], plan.sliding[phase] >= 0
@@ -100,7 +100,7 @@ class Signals:
 
 
 def _relaxed_share(protocol: Protocol, time: np.ndarray | float) -> np.ndarray:
-    """Share of the friction force that remains after a time at rest."""
+    """Return the share of the friction force that remains after a time at rest."""
     left = np.exp(-np.asarray(time) / protocol.relaxation_time)
     return protocol.relaxed_part + (1 - protocol.relaxed_part) * left
 
@@ -190,7 +190,7 @@ def _ripple(
     fine: np.ndarray,
     rng: np.random.Generator,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Stick-slip of zero mean over the constant-speed part, and fluctuation whose mean is random.
+    """Return stick-slip of zero mean at constant speed, plus fluctuation with a random mean.
 
     The mean of the fluctuation is kept, because error bars estimated from the trace include it.
     """

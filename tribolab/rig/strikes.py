@@ -21,7 +21,7 @@ _FAST = 130.0  # Hz; slower logs do not resolve the lines of mains and rig
 
 
 def _typical(run: SimulatedRun) -> float:
-    """Mean magnitude of the friction force over the segments [N]."""
+    """Return the mean magnitude of the friction force over the segments [N]."""
     mean = float(np.abs(run.segments["friction_coefficient"]).mean())
     return mean * float(run.facts["normal_force_N"])
 
@@ -47,7 +47,7 @@ def _keep_rows(run: SimulatedRun, keep: np.ndarray, facts: StrikeFacts) -> Struc
 
 
 def _rows(run: SimulatedRun, stroke: int) -> slice:
-    """Rows of the force log within a constant-speed segment."""
+    """Return the rows of the force log within a constant-speed segment."""
     row = run.segments.iloc[stroke]
     first, last = np.searchsorted(run.force_log.time.values, [row.start_s, row.stop_s])
     return slice(int(first), int(last))
@@ -216,7 +216,7 @@ def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _wave(run: SimulatedRun, amplitude: float, frequency: float, phase: float) -> np.ndarray:
-    """Sine averaged over the sampling interval of a logger."""
+    """Return the sine averaged over the sampling interval of a logger."""
     seen = np.nan_to_num(np.sinc(frequency * _interval(run)))
     time = run.force_log.time.values
     return amplitude * seen * np.sin(2 * np.pi * frequency * time + phase)
@@ -263,7 +263,7 @@ def sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _progress(run: SimulatedRun) -> np.ndarray:
-    """Share of the segment passed at each row; NaN outside segments."""
+    """Return the share of the segment passed at each row; NaN outside segments."""
     time = run.force_log.time.values
     result = np.full(time.size, np.nan)
     for stroke in range(len(run.segments)):

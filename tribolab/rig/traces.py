@@ -100,7 +100,7 @@ def simulate_trace(
 def _truth(
     wave: Callable[[np.ndarray], np.ndarray], length: float, wavelength: float
 ) -> dict[str, float]:
-    """Mean distance between the peaks, and mean drop after them, of the wave without noise."""
+    """Return mean distance between peaks and mean drop of the wave without noise."""
     place = np.linspace(0, length, int(_FINE * length / wavelength))
     values = wave(place)
     rising = np.diff(values) > 0

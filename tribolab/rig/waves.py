@@ -17,7 +17,7 @@ def sawtooth(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Sawtooth wave with slow linear rise and abrupt drop, and scattering periods and drops.
+    """Return a sawtooth wave with slow linear rise, abrupt drop, and random scatter.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def irregular(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Stick-slip without a period, with random thresholds and drops.
+    """Return stick-slip without a period, with random thresholds and drops.
 
     Parameters as for `sawtooth`; `jitter` is ignored. Peaks and valleys scatter by a third of a
     drop. Loading has constant slope, so that periods follow from the thresholds; a drop takes a

@@ -104,7 +104,7 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
 
 
 def modulus_table() -> xr.Dataset:
-    """Storage and loss modulus of the stand-in for the paper's rubber, over angular frequency."""
+    """Return storage and loss modulus of the stand-in for the paper's rubber over frequency."""
     # imported late for a quick start
     from tribolab.rubber.modulus import PDMS_STAND_IN
 

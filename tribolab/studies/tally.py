@@ -42,7 +42,7 @@ def count_statuses(table: pd.DataFrame) -> dict[str, int]:
 
 
 def tell_statuses(table: pd.DataFrame) -> str:
-    """Text on how many numbers have each status, and on the wide tolerances.
+    """Return text on how many numbers have each status, and on the wide tolerances.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ class Theory:
         self._slow = functools.cache(self._boundary)
 
     def load(self, row: Published) -> float:
-        """Load [N/m] of a condition; a published pressure is converted to its load."""
+        """Return the load [N/m] of a condition; a published pressure is converted to its load."""
         if match := _LOAD.search(row.condition):
             return float(match[1])
         if match := _PRESSURE.search(row.condition):
@@ -78,69 +78,69 @@ class Theory:
             return False
 
     def pressure(self, row: Published) -> float:
-        """Exact mean Hertz pressure [Pa] of the load; a pressure without a load is unchanged."""
+        """Return the mean Hertz pressure [Pa] of the load; a pressure without load is unchanged."""
         if not self.has_load(row):
             return 1e6 * _stated_number(_PRESSURE, row)
         return float(hertz_mean_pressure(self.load(row), self._contact))
 
     def medium(self, row: Published) -> str:
-        """Medium of a condition with adhesion; "" without."""
+        """Return the medium of a condition with adhesion; "" without."""
         if "no adhesion" in row.condition:
             return ""
         return next((medium for medium in self.media if medium in row.condition), "")
 
     def hertz_half_width(self, row: Published) -> float:
-        """Half-width [m] of the Hertz contact, Eq. (16)."""
+        """Return the half-width [m] of the Hertz contact, Eq. (16)."""
         return float(hertz_half_width(self.load(row), self._contact))
 
     def hertz_max_pressure(self, row: Published) -> float:
-        """Maximum Hertz pressure [Pa]."""
+        """Return the maximum Hertz pressure [Pa]."""
         return float(hertz_max_pressure(self.load(row), self._contact))
 
     def jkr_half_width(self, row: Published) -> float:
-        """Half-width [m] of the JKR contact, Eq. (15), with the condition's work of adhesion."""
+        """Return the JKR half-width [m], Eq. (15), with the condition's work of adhesion."""
         work = _stated_number(_WORK, row)
         return float(jkr_half_width(self.load(row), self._contact, work))
 
     def roughness(self, surface: str) -> float:
-        """Root-mean-square roughness [m] of the stand-in spectrum."""
+        """Return the root-mean-square roughness [m] of the stand-in spectrum."""
         return rms_roughness(xu2026.psd(surface))
 
     def slope(self, surface: str) -> float:
-        """Root-mean-square slope [1] of the stand-in spectrum."""
+        """Return the root-mean-square slope [1] of the stand-in spectrum."""
         return rms_slope(xu2026.psd(surface))
 
     def area(self, row: Published) -> float:
-        """Real contact area ratio A/A0 without adhesion."""
+        """Return the real contact area ratio A/A0 without adhesion."""
         return contact_area_ratio(self.pressure(row), xu2026.psd(row.surface), self._modulus)
 
     def work(self, medium: str) -> float:
-        """Work of adhesion [J/m2], Eqs. (13) and (14)."""
+        """Return the work of adhesion [J/m2], Eqs. (13) and (14)."""
         return PDMS_PMMA_GLYCEROL.dry if medium == "dry" else PDMS_PMMA_GLYCEROL.wet
 
     def work_bounds(self, medium: str) -> tuple[float, float]:
-        """Smallest and largest work of adhesion [J/m2] for the surface energies."""
+        """Return the smallest and largest work of adhesion [J/m2] for the surface energies."""
         spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2)
         mine = spread.sel(medium="dry" if medium == "dry" else "wet")
         return float(mine.work_of_adhesion_low), float(mine.work_of_adhesion_high)
 
     def adhesive_area(self, row: Published, medium: str) -> float:
-        """Real contact area ratio A/A0 with adhesion."""
+        """Return the real contact area ratio A/A0 with adhesion."""
         areas, _ = self._adhesive(row.surface, medium)
         return float(areas[np.argmin(np.abs(self._pressures - self.pressure(row)))])
 
     def enhancement(self, surface: str, medium: str) -> list[float]:
-        """Contact area relative to that without adhesion, at each load."""
+        """Return the contact area relative to that without adhesion, at each load."""
         return self._adhesive(surface, medium)[1][:-1].tolist()
 
     def macroscopic_work(self, surface: str, medium: str) -> float:
-        """gamma_eff(1) [J/m2] at vanishing load."""
+        """Return gamma_eff(1) [J/m2] at vanishing load."""
         work = self._published_work(medium)
         macroscopic = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
         return float(macroscopic.macroscopic_work_of_adhesion)
 
     def viscoelastic_friction(self) -> dict[str, float]:
-        """Largest mu_visc of each surface at the speeds of the paper; Smooth in full contact."""
+        """Return the largest mu_visc of each surface; Smooth in full contact."""
         speeds = np.array(xu2026.SPEEDS)
         largest = {}
         for name in xu2026.surfaces:
@@ -153,16 +153,16 @@ class Theory:
         return largest
 
     def line(self, row: Published) -> tuple[float, float]:
-        """Maximum pressure [Pa] and width [m] of the dry rough line contact."""
+        """Return the maximum pressure [Pa] and width [m] of the dry rough line contact."""
         return self._lines(row.surface, self.load(row))
 
     def separation_decay(self, surface: str) -> float:
-        """Constant alpha = h_rms/u0 of p ~ exp(-alpha u/h_rms)."""
+        """Return the constant alpha = h_rms/u0 of p ~ exp(-alpha u/h_rms)."""
         table = separation_table(xu2026.psd(surface), self._modulus)
         return table.rms_roughness / table.decay_length
 
     def flow_stops(self, level: float) -> list[float]:
-        """Mean separation over h_rms of each surface where phi_p falls below a level."""
+        """Return the mean separation over h_rms of each surface where phi_p falls below a level."""
         stops = []
         for name in xu2026.surfaces:
             factors = flow_factors(xu2026.psd(name))
@@ -173,7 +173,7 @@ class Theory:
         return stops
 
     def boundary_onset(self, row: Published, share: float) -> float:
-        """Speed [m/s] at which friction has fallen to a share of the dry friction."""
+        """Return the speed [m/s] at which friction has fallen to a share of the dry friction."""
         speed, friction = self._slow(row.surface, self.load(row))
         return float(np.exp(np.interp(-share, -friction, np.log(speed))))
 
@@ -195,7 +195,7 @@ class Theory:
         return float(line.max_pressure), float(line.contact_width)
 
     def _boundary(self, surface: str, load: float) -> tuple[np.ndarray, np.ndarray]:
-        """Low speeds [m/s], and friction there relative to the dry contact."""
+        """Return low speeds [m/s], and friction there relative to the dry contact."""
         speed = np.append(0.0, np.geomspace(1e-11, 1e-6, 21))
         stress = dict(xu2026.surface(surface).shear_stress)[load * self._contact.length]
         eta = xu2026.system.viscosity

@@ -65,7 +65,7 @@ class Verdict(NamedTuple):
 
 
 def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = None) -> Verdict:
-    """Verdict on a published number, from the computed one and others in the paper.
+    """Return the verdict on a published number, from the computed one and others in the paper.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = 
 
 
 def room_text(tolerance: float) -> str:
-    """Relative tolerance as text.
+    """Return the relative tolerance as text.
 
     Examples
     --------
@@ -123,7 +123,7 @@ def room_text(tolerance: float) -> str:
 
 
 def _grade(row: Published, computed: Computed) -> str:
-    """Kind of agreement of a number."""
+    """Return the kind of agreement of a number."""
     if computed.given:
         return BY_CONSTRUCTION
     printed = row.last_digit / 2 / abs(row.si) if row.si else 0.0
@@ -132,7 +132,7 @@ def _grade(row: Published, computed: Computed) -> str:
 
 
 def _relative_distance(row: Published, computed: Computed) -> float:
-    """Relative distance of a computed number, or of a range, from the printed one [1]."""
+    """Return relative distance of a computed number, or of a range, from the printed one [1]."""
     if row.relation == ">" or not row.si:
         return 0.0
     low, high = _range(computed)

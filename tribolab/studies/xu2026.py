@@ -73,12 +73,12 @@ class ReferenceSystem:
         return self.youngs_modulus / (1 - self.poisson_ratio**2)
 
     def half_width(self, normal_force: float) -> float:
-        """Half-width a [m] of the Hertz line contact, Eq. (16)."""
+        """Return half-width a [m] of the Hertz line contact, Eq. (16)."""
         load = normal_force / self.length
         return math.sqrt(4 * self.radius * load / (math.pi * self.effective_modulus))
 
     def nominal_pressure(self, normal_force: float) -> float:
-        """Mean Hertz pressure F/(2 a L) [Pa]: the paper's sigma_0."""
+        """Return the mean Hertz pressure F/(2 a L) [Pa]: the paper's sigma_0."""
         return normal_force / (2 * self.half_width(normal_force) * self.length)
 
 
@@ -216,7 +216,7 @@ def surface(name: str) -> StudySurface:
 
 
 def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
-    """Stand-in power spectrum of a surface, from q0 to q1 on a logarithmic grid.
+    """Return the stand-in power spectrum of a surface, from q0 to q1 on a logarithmic grid.
 
     Parameters
     ----------

@@ -36,10 +36,10 @@ def compare(
     ] = Path("comparison"),
     debug: Debug = False,
 ) -> None:
-    """Compare campaigns, or surfaces and media within one: what differs, and how surely.
+    """Compare campaigns, or surfaces and media within one, with statistical significance.
 
-    What changed in settings, code and data; the difference of every curve at every speed with an
-    error rate of 5 % for all of them together; shear stresses and roughness.
+    Lists changes in settings, code and data, differences of every curve at every speed with a joint
+    error rate of 5 %, and differences of shear stresses and roughness.
 
         tribolab compare march/results june/results
 
@@ -88,10 +88,10 @@ def repeatability(
     ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
-    """Tell how well a coefficient repeats: within a mount, between mounts, days, operators.
+    """Estimate repeatability within a mount, and between mounts, days and operators.
 
-    Components of variance at each speed and pooled, with the limits r and R of ISO 5725. The
-    campaign file says in its runs who measured them, when, and on which mount.
+    Reports components of variance at each speed and pooled, with the limits r and R of ISO 5725.
+    The runs in the campaign file state operator, date and mount.
 
         tribolab lab repeatability campaign.toml --by mount,day,operator
     """
@@ -120,10 +120,10 @@ def history(
     ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
-    """Follow instruments over months: control charts of zeros, noise, tilt, set points, reference.
+    """Draw control charts of instruments over months: zeros, noise, tilt, set-points, reference.
 
-    Exits with 1 where a point signals. `[reference]` in the campaign files names runs on a
-    reference sample, `[calibration]` when the instrument was calibrated.
+    The exit code is 1 if a point signals. In the campaign files, `[reference]` names runs on a
+    reference sample, and `[calibration]` states the date of calibration.
 
         tribolab lab history campaigns/*/results
     """
@@ -171,10 +171,10 @@ def plan(
     ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
-    """Tell how long to slide and how often to repeat, from what a pilot scatters.
+    """Plan sliding time and number of runs from the scatter of a pilot campaign.
 
-    Runs at each speed that reach a precision as likely as not, and with assurance, at the pilot's
-    sliding times and at those that cost least in all.
+    Computes, for each speed, the number of runs that reaches a precision with 50 % probability and
+    with assurance, for the pilot's sliding time and for the cheapest one.
 
         tribolab lab plan results --half-interval 0.005 --assurance 0.95 --setup-time "20 min"
     """

@@ -36,8 +36,8 @@ def demo(
     """Simulate a campaign, analyse it and compare the result with the truth.
 
     The virtual rig measures the reference system: smooth and sandblasted PMMA cylinders on
-    PDMS rubber, dry and in glycerol, at 13 speeds in repeats. Called again, it analyses the same
-    raw files and redoes only what changed.
+    PDMS rubber, dry and in glycerol, at 13 speeds in repeats. If called again, it analyses the same
+    raw files and repeats only changed parts.
 
         tribolab demo
 
@@ -66,12 +66,12 @@ def reproduce(
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Reproduce the reference paper: its figures, and its numbers beside computed ones.
+    """Reproduce the figures of the reference paper, and compare its numbers with computed ones.
 
-    `paper.html` goes through it section by section and says what was measured by the authors, what
-    is computed here and what is simulated by the virtual rig; `paper.csv` has a row for each of
-    the 58 published numbers, with status and reason: what was put in agrees by construction and is
-    not counted as reproduced. It takes about a minute.
+    `paper.html` shows, section by section, what was measured by the authors, computed here, or
+    simulated by the virtual rig; `paper.csv` has a row for each of the 58 published numbers, with
+    status and reason: inputs agree by construction and do not count as reproduced. It takes about a
+    minute.
 
         tribolab reproduce --output /tmp/paper
     """
@@ -155,9 +155,9 @@ def run(
 ) -> None:
     """Analyse a folder or a campaign: friction of every run, measured curves, report.
 
-    Raw files are only read. Results appear whole or not at all, and only what changed is done
-    again. For raw files a campaign.toml is written first: runs are told from scans, repeats are
-    grouped by file name. Complete it with what you know of the measurement.
+    Raw files are never changed. Results are written completely or not at all, and only changed
+    parts are computed again. For raw files a campaign.toml is written first, with runs, scans, and
+    repeats grouped by file name. Complete it with your knowledge of the measurement.
 
         tribolab run my_folder/
 
@@ -253,7 +253,7 @@ def figures(
 ) -> None:
     """Draw all figures for publication: surfaces, models and sliding, too.
 
-    `tribolab run` draws the measured curves. What it has computed is not computed again.
+    `tribolab run` draws only the measured curves. Its results are reused.
 
         tribolab figures campaign.toml --pdf
     """
@@ -281,9 +281,9 @@ def simulate(
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Write a campaign of raw files as the virtual rig measures it, with the truth beside it.
+    """Write a simulated campaign of raw files from the virtual rig, with the truth.
 
-    To learn with, to teach with, and to try an analysis on data whose answer is known.
+    For learning, teaching, and testing an analysis on data with a known result.
 
         tribolab simulate practice --small
 

@@ -65,10 +65,11 @@ def check(
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Say whether runs and scans are usable, while the sample is still mounted.
+    """Check whether runs and scans are usable, while the sample is still mounted.
 
-    What is wrong, where, how badly, and what to do. Nothing is written. A folder or a campaign file
-    stands for its raw files; limits and segments of a campaign count in `tribolab run`.
+    Reports each problem with its place, severity and remedy. Nothing is written. For a folder or a
+    campaign file, its raw files are checked; limits and segments of a campaign apply in `tribolab
+    run`.
 
         tribolab check raw/friction/sb-r_dry_31N_01_*.csv
 
@@ -135,9 +136,9 @@ def info(
 ) -> None:
     """Show how raw files are understood, before anything is computed.
 
-    With --write it asks what the files do not say, describes their instrument in a TOML file, tries
-    that on the files, and says which of its lines are to be filled in. Columns that are missing in
-    some of the files are optional. The raw files are only read.
+    With --write it asks for missing information, describes the instrument in a TOML file, tests
+    that on the files, and names the lines to be completed. Columns that are missing in some of the
+    files are optional. The raw files are never changed.
 
         tribolab info raw/friction/*.csv
 

@@ -35,10 +35,10 @@ def pack(
     licence: Annotated[str, typer.Option(help="Its SPDX name, e.g. CC-BY-4.0.")] = "",
     debug: Debug = False,
 ) -> None:
-    """Pack results for a repository: one file that others can read and run again.
+    """Pack results into one file for a repository, which others can read and analyse again.
 
-    An RO-Crate with report, tables, data and settings, every file with description and SHA-256,
-    checked before it gets its name. Results are verified first, all their bytes.
+    Writes an RO-Crate with report, tables, data and settings, with description and SHA-256 of every
+    file. All bytes of the results are verified first, and the archive before it gets its name.
 
         tribolab pack results --raw --author "A. Person" --licence CC-BY-4.0
     """
@@ -88,11 +88,11 @@ def verify(
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Check that results are as they were written, all their bytes.
+    """Check that no byte of the results has changed since they were written.
 
-    Checksums tell damage: a flipped bit, a file cut short, one changed by hand. They have no key,
-    so whoever changes a table can write a matching checksum, too. Only --recompute tells that: it
-    computes the tables, report.json and the data files from the raw files and compares the numbers.
+    Checksums reveal damage: a flipped bit, an incomplete file, a manual change. They have no key,
+    so a forged table can have a matching checksum. Only --recompute reveals that: it computes
+    tables, report.json and data files again from the raw files and compares the numbers.
 
         tribolab verify results
 

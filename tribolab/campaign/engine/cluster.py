@@ -31,7 +31,7 @@ class ClusterAbsent(ConfigError):
 
 
 def gone(why: str, done: int, of: int) -> str:
-    """Error for a lost cluster, with the reason and the finished work."""
+    """Return the error for a lost cluster, with the reason and the finished work."""
     said = f"; {done} of {of} pieces of work were done" if of else ""
     return (
         f"the Dask cluster is lost: {why}{said}. Nothing was written, results of before are as "
@@ -132,7 +132,7 @@ class Cluster(Executor):
         return why if final or time.monotonic() - self._missed > PATIENCE else ""
 
     def _missing(self, now: float) -> tuple[str, bool]:
-        """Return what is missing for any work, and whether the waiting time is over."""
+        """Return the reason why no work is possible, and whether it is final."""
         try:
             if self._client.status != "running":
                 raise OSError

@@ -34,7 +34,7 @@ MASKS = hasattr(signal, "pthread_sigmask")
 class ResultPipe:
     """The pipe by which the workers of a pool return results, with a writing end we can close.
 
-    Has what `ProcessPoolExecutor` uses of a `multiprocessing.SimpleQueue`.
+    Has the methods of `multiprocessing.SimpleQueue` that `ProcessPoolExecutor` uses.
     """
 
     def __init__(self, context: BaseContext) -> None:
@@ -70,7 +70,7 @@ class Fresh(SpawnContext):
         self.results = ResultPipe(self)
         return self.results
 
-    # multiprocessing's name, and there a class; whoever calls it wants a process and no more
+    # multiprocessing's name of a class; its callers only need a process
     def Process(  # type: ignore[override]  # noqa: N802
         self, *args: Any, **kwargs: Any
     ) -> BaseProcess:
@@ -124,9 +124,9 @@ def begin_worker(variables: Mapping[str, str]) -> None:
     if MASKS:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     _set_environment({**variables, **ONE_THREAD})
-    # what arithmetic does with damaged numbers is found by checks, and told in words
+    # checks report damaged numbers in words
     warnings.filterwarnings("ignore", category=RuntimeWarning)
-    gc.freeze()  # what is imported stays: no use in looking through it for garbage
+    gc.freeze()  # imported objects remain, so the collector need not scan them
     gc.enable()  # a nursery looks for none
     parent = multiprocessing.parent_process()
 

@@ -237,7 +237,7 @@ def _with_other_area(computed: xr.Dataset) -> xr.Dataset:
 
 
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
-    """Ratio of the area with adhesion to the model's area at the load, and its bounds.
+    """Return the ratio of the area with adhesion to the model's area at the load, and its bounds.
 
     The ratio is 1 if the model includes adhesion.
     """

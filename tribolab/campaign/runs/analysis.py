@@ -115,7 +115,7 @@ def _steady_part(
     discard: str | None,
     steady: str | None,
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Segments that are used, and the friction of all if some are left out."""
+    """Return the segments that are used, and the friction of all if some are left out."""
     if discard is None and steady is None:
         return segments, None
     # imported late for a quick start
@@ -131,7 +131,7 @@ def _steady_part(
 
 
 def run_labels(run: PlannedRun) -> dict[str, str]:
-    """Labels that every dataset of a run gets as attributes."""
+    """Return the labels that every dataset of a run gets as attributes."""
     return {"run_name": run.name} | {
         key: value
         for key in ("surface", "medium", "mount", "specimen")

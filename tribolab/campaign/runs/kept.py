@@ -119,7 +119,7 @@ def _apply_decisions(
 
 
 def _plain(row: DecisionRow) -> dict[str, object]:
-    """Decision as plain data, as from `Decision.plain`."""
+    """Return the decision as plain data, as from `Decision.plain`."""
     names = ("action", "start_s", "stop_s", "new_start_s", "new_stop_s", "reason", "author", "date")
     return {name: getattr(row, name) for name in names}
 

@@ -35,7 +35,7 @@ class RunLoad(NamedTuple):
 
 
 def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> RunLoad:
-    """Load that identifies a run: stated, or else measured while it slid.
+    """Return the load that identifies a run: stated, or else measured while it slid.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def _was_set(signals: xr.Dataset) -> bool:
 
 
 def load_levels(force: np.ndarray, lasts: np.ndarray) -> tuple[float, ...]:
-    """Load levels of a run whose segments were measured under several, smallest first.
+    """Return the load levels of a run whose segments were measured under several, smallest first.
 
     Parameters
     ----------

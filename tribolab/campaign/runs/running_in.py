@@ -17,7 +17,7 @@ _MOST_POINTS = 384  # columns of friction along a run for figures
 def running_in_of(
     run: xr.Dataset, friction: xr.Dataset
 ) -> tuple[tuple[RunningIn, ...], tuple[Row, ...]]:
-    """Running-in of a run at each speed, and friction along the run for figures.
+    """Return the running-in of a run at each speed, and friction along the run for figures.
 
     Parameters
     ----------

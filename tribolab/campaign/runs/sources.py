@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def sources_of_run(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
-    """Files of a run with the checksums taken while reading."""
+    """Return the files of a run with the checksums taken while reading."""
     names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
     known = dict(zip(names, sums, strict=False))
     return tuple(
@@ -26,7 +26,7 @@ def sources_of_run(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
 
 
 def source_of(file: Path, label: str) -> Source:
-    """Label, checksum and size of a file; no checksum if it cannot be read."""
+    """Return label, checksum and size of a file; no checksum if it cannot be read."""
     try:
         return label, sha256_of_file(file), file.stat().st_size
     except OSError:  # missing or unreadable: the outcome of its run reports it

@@ -286,7 +286,7 @@ def _add_dead_weight_gain(facts: RunFacts, run: PlannedRun, signals: xr.Dataset)
 
 
 def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> tuple[Row, ...]:
-    """Rows of static friction; empty without a coefficient."""
+    """Return the rows of static friction; empty without a coefficient."""
     # imported late for a quick start
     from tribolab.friction.coefficient.static import static_friction
     from tribolab.records.frames import plain_rows, static_friction_columns
@@ -327,7 +327,7 @@ def _trace(
 
 
 def _root(run: PlannedRun, attrs: Json) -> xr.Dataset:
-    """Attributes of the whole file, for users who open it without a group."""
+    """Return the attributes of the whole file, for users who open it without a group."""
     origin = made(
         f"friction of {run.name}",
         source=attrs["source"],

@@ -35,7 +35,7 @@ def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | f
 
 
 def zero_of(attrs: Mapping[str, Any], run: Mapping[str, Any], stated: str | None) -> RunZero:
-    """Zero of a run from the attributes of its friction result.
+    """Return the zero of a run from the attributes of its friction result.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def zero_of(attrs: Mapping[str, Any], run: Mapping[str, Any], stated: str | None
 
 
 def zeros_text(zeros: Iterable[float]) -> str:
-    """Text of zeros, equal for equal zeros."""
+    """Return text of zeros, equal for equal zeros."""
     return "; ".join(f"{zero:.{_DIGITS}g}" for zero in zeros)
 
 

@@ -124,7 +124,7 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
 
 
 def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Spectrum, and the two that give the lower and upper bound of a contact area."""
+    """Return the spectrum, and those for the lower and upper bound of a contact area."""
     ends = {"": "", "_low": "_high", "_high": "_low"}  # more roughness, less contact
     return {
         ending: psd[["psd_2d"]].assign(psd_2d=psd[f"psd_2d{other}"])
@@ -150,7 +150,7 @@ def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float, theory: AreaTheo
 
 
 def _loads(forces: np.ndarray, contact: Contact, psd: xr.Dataset, theory: AreaTheory) -> xr.Dataset:
-    """Hertz contact at each load, and the rough contact at its mean pressure."""
+    """Return the Hertz contact at each load, and the rough contact at its mean pressure."""
     load = np.array([contact.load(float(force)) for force in forces])
     coords = {"load": load}
 
@@ -172,7 +172,7 @@ def _loads(forces: np.ndarray, contact: Contact, psd: xr.Dataset, theory: AreaTh
 
 
 def _lines(forces: np.ndarray, contact: Contact, psd: xr.Dataset, theory: AreaTheory) -> xr.Dataset:
-    """Dry rough line contact at each load, each with its own x."""
+    """Return the dry rough line contact at each load, each with its own x."""
     parts = []
     for force in forces:
         load = contact.load(float(force))

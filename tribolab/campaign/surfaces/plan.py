@@ -54,7 +54,7 @@ class PlannedSurface:
     media
         Media whose work of adhesion is known.
     modulus_file
-        File of the viscoelastic modulus, and its label; None if there is none.
+        File of the viscoelastic modulus, and its label; None without one.
     modulus_read
         Sweep to use, and the unit if the file does not state it.
     rubber

@@ -36,7 +36,7 @@ class _Rubber(NamedTuple):
 
 
 def rubber_objection(surface: PlannedSurface) -> Finding | None:
-    """Reason why the friction of the rubber is not computed; None if it is."""
+    """Return the reason why the friction of the rubber is not computed; None if it is."""
     stiffness = surface.contact["youngs_modulus"]
     known = surface.modulus_file is not None or surface.rubber.get("prony_moduli")
     if known or stiffness <= _STIFFEST_RUBBER:
@@ -51,7 +51,7 @@ def rubber_objection(surface: PlannedSurface) -> Finding | None:
 def rubber_groups(
     surface: PlannedSurface, loads: xr.Dataset, psd: xr.Dataset, findings: list[Finding]
 ) -> tuple[xr.Dataset, xr.Dataset]:
-    """Friction of the rubber over the loads and speed, and its modulus over frequency.
+    """Return the friction of the rubber over the loads and speed, and its modulus over frequency.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def rubber_groups(
 
 
 def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
-    """Modulus from a file, a Prony series, or else a stand-in for a rubber."""
+    """Return the modulus from a file, a Prony series, or else a stand-in for a rubber."""
     stiffness = surface.contact["youngs_modulus"]
     if surface.modulus_file is not None:
         path, label = surface.modulus_file

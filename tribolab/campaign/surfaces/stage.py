@@ -207,12 +207,12 @@ def _files(surface: PlannedSurface) -> list[tuple[Path, str]]:
 
 
 def sources_of_surface(surface: PlannedSurface) -> tuple[Source, ...]:
-    """Label, checksum and size of the scans and of the modulus file."""
+    """Return label, checksum and size of the scans and of the modulus file."""
     return tuple(source_of(path, label) for path, label in _files(surface))
 
 
 def _root(surface: PlannedSurface, sources: tuple[Source, ...], quality: str) -> xr.Dataset:
-    """Attributes of the whole file, with checksums also of unused files."""
+    """Return the attributes of the whole file, with checksums also of unused files."""
     # imported late: xarray loads slowly
     import xarray as xr
 

@@ -82,7 +82,7 @@ def _speed(curve: xr.Dataset) -> np.ndarray:
 
 
 def _reduced(curve: xr.Dataset, viscosity: float) -> tuple[np.ndarray, np.ndarray]:
-    """Viscosity times speed [N/m] and friction, without points at rest."""
+    """Return viscosity times speed [N/m] and friction, without points at rest."""
     speed = _speed(curve)
     return viscosity * speed[speed > 0], curve["friction_coefficient"].values[speed > 0]
 

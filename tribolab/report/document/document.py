@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 _BY_HAND = ("rejected", "accepted")  # possible decisions on a run
 _HEAD = TypeAdapter(ReportHead)
-_INSTRUMENTS = 3  # maximum number whose ranges are listed separately in the headline
+_INSTRUMENTS = 3  # most instruments with separate ranges in the headline
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 

@@ -83,7 +83,7 @@ def write_faulty_scans(
 
 
 def _files(scans: xr.Dataset, results: bool) -> dict[str, bytes]:
-    """Content of each scan's file."""
+    """Return the content of each scan's file."""
     attrs, x, heights = scans.attrs, scans.x.values, scans.height.values
     if "recorded_x" in scans.coords:  # uneven speed of the traverse
         places = scans.recorded_x.values

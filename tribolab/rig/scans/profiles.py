@@ -94,7 +94,7 @@ def scans(
 
 
 def touch(height: np.ndarray, pitch: float, tip_radius: float) -> np.ndarray:
-    """Height of a spherical tip that touches profiles [m] (..., x): dilation by the sphere."""
+    """Return the height [m] of a spherical tip on profiles (..., x): dilation by the sphere."""
     # imported late: scipy loads slowly
     from scipy.ndimage import grey_dilation
 

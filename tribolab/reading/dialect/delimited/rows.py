@@ -92,7 +92,7 @@ class RowParser:
     ) -> pa.Table:
         """Parse again without an incomplete last row; else raise with a diagnosis.
 
-        Superfluous delimiters at the end of rows, e.g. beside a comment, are removed.
+        Superfluous delimiters at the end of rows, e.g. next to a comment, are removed.
         """
         if (tidy := self._without_surplus(block)) != block:
             try:
