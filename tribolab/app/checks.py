@@ -160,9 +160,9 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
             sets = repeats_by_name(scans)
         tasks = [CheckTask("run", g, (), self._instrument) for g, k in kinds.items() if k == "run"]
         for files in filter(None, sets):
-            own = tuple(r for r in results if any(_belongs(r, scan) for scan in files))
+            own = tuple(r for r in results if any(_are_results_of(r, scan) for scan in files))
             tasks.append(CheckTask("scan", tuple(files), own, self._instrument))
-        alone = [r for r in results if not any(_belongs(r, scan) for scan in scans)]
+        alone = [r for r in results if not any(_are_results_of(r, scan) for scan in scans)]
         return [*tasks, *(CheckTask("results", (path,)) for path in alone)]
 
     @staticmethod
@@ -175,14 +175,14 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
         if isinstance(error, ConfigError):
             raise error  # a wrong instrument concerns every file
         groups = [task.files] if task.kind == "run" else [(file,) for file in task.files]
-        return [Checked(files, error=_why(error), kind="file") for files in groups]
+        return [Checked(files, error=_error_text(error), kind="file") for files in groups]
 
     def keep(self, task: CheckTask, place: int, record: list[Checked]) -> list[Checked]:
         """Return the record; nothing is stored."""
         return record
 
 
-def _why(error: BaseException) -> str:
+def _error_text(error: BaseException) -> str:
     """Return why a file cannot be read; for unexpected errors with their location."""
     foreseen = isinstance(error, TribolabError | OSError)
     return told(error, "terminal") if foreseen else explain(error)[0]
@@ -257,9 +257,9 @@ def _check_scans(task: CheckTask) -> list[Checked]:
         except ConfigError:
             raise
         except (TribolabError, OSError) as error:
-            checked.append(Checked((path,), error=_why(error), kind="file"))
+            checked.append(Checked((path,), error=_error_text(error), kind="file"))
     if scans:
-        own = [[r for path, r in results.items() if _belongs(path, file)] for file in scans]
+        own = [[r for path, r in results.items() if _are_results_of(path, file)] for file in scans]
         judged = check_scan_set(list(scans.values()), results=own)
         checked += [Checked.of((f,), said, "scan") for f, said in zip(scans, judged, strict=True)]
     return checked
@@ -275,7 +275,7 @@ def _check_results(task: CheckTask) -> list[Checked]:
 _WORK = {"run": _check_run, "scan": _check_scans, "results": _check_results}
 
 
-def _belongs(results: Path, scan: Path) -> bool:
+def _are_results_of(results: Path, scan: Path) -> bool:
     """Whether results have the same folder and base name as a scan."""
     return results.parent == scan.parent and results.stem.casefold() == scan.stem.casefold()
 

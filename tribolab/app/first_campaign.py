@@ -90,12 +90,12 @@ def campaign_file(
     text = campaign_text(whole, folder.resolve(), results, instrument, lines)
     try:
         before = campaign_text(whole, folder.resolve(), results)
-        if (instrument is not None or lines) and _says(file, before):
+        if (instrument is not None or lines) and _has_text(file, before):
             file.unlink()  # written by an earlier attempt, and unchanged
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except FileExistsError:
-        if not _says(file, text):
+        if not _has_text(file, text):
             raise ConfigError(
                 f"{file} stands here already, and says something else of these files",
                 cure=f"run it, if it was completed: tribolab run {file}; delete it, if it is of an "
@@ -201,7 +201,7 @@ def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str
     return said if len(said) == len(paths) else []
 
 
-def _says(file: Path, text: str) -> bool:
+def _has_text(file: Path, text: str) -> bool:
     return file.is_file() and file.read_bytes() == text.encode()
 
 

@@ -108,7 +108,7 @@ def prepared() -> Iterator[None]:
             setattr(sys, name, opened)
     before = {}
     ignored = sys.unraisablehook
-    sys.unraisablehook = partial(_sent_again, ignored)
+    sys.unraisablehook = partial(_resend, ignored)
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) is signal.SIG_DFL:  # nohup ignores SIGHUP on purpose
             before[number] = signal.signal(number, _stop)
@@ -131,7 +131,7 @@ def _stop(number: int, frame: FrameType | None) -> NoReturn:
     raise Terminated(number)
 
 
-def _sent_again(before: _Hook, unraisable: sys.UnraisableHookArgs) -> None:
+def _resend(before: _Hook, unraisable: sys.UnraisableHookArgs) -> None:
     """Send a signal again that was raised where compiled code swallows exceptions."""
     error = unraisable.exc_value
     if not isinstance(error, KeyboardInterrupt):

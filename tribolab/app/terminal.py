@@ -134,11 +134,11 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
         str(segments) if "segments" in points[0] else "",
         f"{range_of(f'{min(speed):.3g}', f'{max(speed):.3g}')} m/s",
         range_of(f"{min(mu):.3f}", f"{max(mu):.3f}"),
-        _error_of(points),
+        _largest_error(points),
     )
 
 
-def _error_of(points: Sequence[Row]) -> str:
+def _largest_error(points: Sequence[Row]) -> str:
     """Return the largest U95, and whether it is within or between runs."""
     own = [row.get("friction_coefficient_U95") for row in points]
     known = [float(v) for v in own if v is not None]
@@ -160,7 +160,7 @@ def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
     is_known = any(row.get("sliding_speed_m_s") is not None for row in rows)
     said = _NONE if is_known else "speed unknown"
     runs = [run for run in outcome.runs if run.name in curve.run_names]
-    return str(len(runs)), str(sum(run.segments for run in runs)), said, text, _error_of(rows)
+    return str(len(runs)), str(sum(run.segments for run in runs)), said, text, _largest_error(rows)
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
@@ -177,7 +177,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
         runs = [run for run in outcome.runs if run.quality == quality]
         # read only the records that are named
-        names = [f"{run.name}{_why(run, outcome)}" for run in runs[:_HANDFUL]]
+        names = [f"{run.name}{_reasons_of_run(run, outcome)}" for run in runs[:_HANDFUL]]
         names += [run.name for run in runs[_HANDFUL:]]
         for surface in outcome.surfaces:
             if quality in surface.objections:
@@ -263,7 +263,7 @@ def _decisions(outcome: Outcome) -> list[str]:
     ]
 
 
-def _why(run: RunOutcome, outcome: Outcome) -> str:
+def _reasons_of_run(run: RunOutcome, outcome: Outcome) -> str:
     entry = outcome.store.get("run", run.name, RunRecord)
     rows = [] if entry is None else [asdict(row) for row in entry.record.facts.checks]
     return _reasons(rows, run.quality)

@@ -198,7 +198,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     every = frictions
     frictions, ratio = stribeck_part(frictions, task.speed_tolerance)
     curve, known = _budget_curve(frictions, task.speed_tolerance)
-    curve = _with_rolling(curve, ratio)
+    curve = _with_entrainment_speed(curve, ratio)
     levels: list[float | None] = []
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions, task.speed_tolerance))))
@@ -249,7 +249,7 @@ def _temperature(frictions: Sequence[xr.Dataset]) -> tuple[float | None, float]:
     return float(np.mean(known)), float(np.hypot(np.std(known), np.mean(within)))
 
 
-def _with_rolling(curve: xr.Dataset, ratio: float | None) -> xr.Dataset:
+def _with_entrainment_speed(curve: xr.Dataset, ratio: float | None) -> xr.Dataset:
     """Return a curve with entrainment speeds, if its slide-roll ratio is given."""
     if ratio is None:
         return curve
@@ -295,7 +295,7 @@ def _curve_as_found(task: CurveTask) -> xr.Dataset | None:
     pairs = zip(undecided, task.found_levels, strict=True)
     kept = [friction.isel(segment=own.of(friction)) for friction, own in pairs]
     kept, ratio = stribeck_part(kept, task.speed_tolerance)
-    return _with_rolling(_budget_curve(kept, task.speed_tolerance)[0], ratio)
+    return _with_entrainment_speed(_budget_curve(kept, task.speed_tolerance)[0], ratio)
 
 
 def _segments_at_load(part: Parts, own: _Levels) -> Parts:

@@ -86,7 +86,7 @@ class Modes(Recorded[ModeTask, ModeRecord, Notice]):
     ) -> None:
         super().__init__(store)
         self._curves = [c for c in curves if c.outcome.done and _has_friction(c)]
-        self._known = _all_known(campaign, self._curves, surfaces, models)
+        self._known = _known_by_curve(campaign, self._curves, surfaces, models)
         self._models = {m.outcome.curve: m for m in models if m.outcome.done}
 
     def plan(self) -> list[ModeTask]:
@@ -179,7 +179,7 @@ def _has_friction(curve: CurveRecord) -> bool:
     return any(row["friction_coefficient"] is not None for row in curve.points)
 
 
-def _all_known(
+def _known_by_curve(
     campaign: Campaign,
     curves: Sequence[CurveRecord],
     surfaces: Iterable[SurfaceRecord],

@@ -83,7 +83,7 @@ def process(
 
     came = perform(Runs(runs, store), executor, progress)
     _refuse_if_all_died(came)
-    came = keep_runs(campaign, store, _with_lent_zeros(runs, came, store, executor))
+    came = keep_runs(campaign, store, _repeat_with_lent_zeros(runs, came, store, executor))
     came = share_loads(store, came)
     outcomes = tuple(run.outcome for run in came)
     surfacing = begun(Surfaces(campaign, outcomes, store), executor, progress)
@@ -112,7 +112,7 @@ def process(
     )
 
 
-def _with_lent_zeros(
+def _repeat_with_lent_zeros(
     runs: Sequence[PlannedRun],
     came: Sequence[RunCame],
     store: Store,

@@ -53,20 +53,20 @@ def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, 
         Visible series of the figure.
     """
     mine = [curve for curve in series if curve.panel == number]
-    x = _scale(panel.x, _along(mine, panel.x), level=False)
+    x = _scale(panel.x, _x_values(mine, panel.x), level=False)
     names = dict.fromkeys(str(y) for curve in mine for y in curve.y if isinstance(y, str))
     if names:
         return x, Scale(-0.5, len(names) - 0.5, names=tuple(names))
-    return x, _scale(panel.y, _up(mine, panel.y, x), level=True)
+    return x, _scale(panel.y, _y_values(mine, panel.y, x), level=True)
 
 
 def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
     """Return a panel whose initial ranges contain the data of several single-panel figures."""
     alike = panels[0][0]
-    along = [x for panel, series in panels for x in _along(series, panel.x)]
+    along = [x for panel, series in panels for x in _x_values(series, panel.x)]
     x = replace(alike.x, include=_ends(along, alike.x))
     seen = _scale(x, iter(()), level=False)
-    up = [y for panel, series in panels for y in _up(series, panel.y, seen)]
+    up = [y for panel, series in panels for y in _y_values(series, panel.y, seen)]
     return Panel(x, replace(alike.y, include=_ends(up, alike.y)))
 
 
@@ -75,7 +75,7 @@ def _ends(values: Sequence[float], axis: Axis) -> tuple[float, ...]:
     return (min(known), max(known)) if known else ()
 
 
-def _along(series: Iterable[Series], axis: Axis) -> Iterator[float]:
+def _x_values(series: Iterable[Series], axis: Axis) -> Iterator[float]:
     for curve in series:
         if curve.style == "bars":
             yield from (0.8 * float(x) if axis.log else 0.0 for x in curve.x)
@@ -87,7 +87,7 @@ def _along(series: Iterable[Series], axis: Axis) -> Iterator[float]:
                     yield from (float(x), float(x) + up, float(x) - down)
 
 
-def _up(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
+def _y_values(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
     least = -math.inf if axis.least is None else axis.least
     for curve in series:
         if curve.style == "band":
@@ -126,12 +126,12 @@ def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
             low = max(low, high - axis.decades)
     elif level and 0 < low < 0.6 * high:
         low = 0.0
-    low, high = _apart(low, high, axis.log)
+    low, high = _widen(low, high, axis.log)
     room = (high - low) * _ROOM
     return Scale(low if low == 0 and not axis.log else low - room, high + room, axis.log)
 
 
-def _apart(low: float, high: float, log: bool) -> tuple[float, float]:
+def _widen(low: float, high: float, log: bool) -> tuple[float, float]:
     """Return the ends of a range, wide enough that rounding noise does not fill it."""
     largest = max(abs(low), abs(high))
     alone = high - low <= (_SAME if log else _SAME * largest)

@@ -39,7 +39,7 @@ def offset_of(friction: xr.Dataset | None, name: str) -> float:
     return float(np.median(values)) if values.size else 0.0
 
 
-def _without(data: xr.DataArray, offset: float) -> np.ndarray:
+def _subtract_offset(data: xr.DataArray, offset: float) -> np.ndarray:
     values = np.asarray(data, float)
     return lowered(values, offset) if offset else values  # avoid copying long records
 
@@ -72,7 +72,7 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
     for name in ("friction_coefficient", "friction_force"):
         if name in run:
             zero = offset_of(friction, f"{name}_offset")
-            return Signal(name, _without(run[name], zero), "offset removed" if zero else "")
+            return Signal(name, _subtract_offset(run[name], zero), "offset removed" if zero else "")
     known = ", ".join(map(str, run.data_vars)) or "nothing"
     raise AnalysisError(
         "the run has neither 'friction_force' nor 'friction_coefficient', so there is no trace to "
@@ -132,7 +132,7 @@ def strokes_of(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
         part = slice(int(first[k]), int(last[k]))
         if part.stop - part.start < 2:
             continue
-        way = _way(run, time, part, speeds[k])
+        way = _sliding_distance(run, time, part, speeds[k])
         ends = np.interp([inner[0][k], inner[1][k]], time[part], way)
         parts.append(
             Stroke(k, part, way, (float(ends[0]), float(ends[1])), speeds[k], int(directions[k]))
@@ -140,7 +140,7 @@ def strokes_of(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
     return parts
 
 
-def _way(run: xr.Dataset, time: np.ndarray, part: slice, speed: float) -> np.ndarray:
+def _sliding_distance(run: xr.Dataset, time: np.ndarray, part: slice, speed: float) -> np.ndarray:
     seconds = time[part] - time[part.start]
     way = seconds * (speed if np.isfinite(speed) else 1.0)
     if "position" in run:

@@ -97,7 +97,7 @@ def friction_row(row: Row) -> Row:
     return {name: value for name, value in row.items() if name not in left}
 
 
-class _Long(NamedTuple):
+class _LongTable(NamedTuple):
     """Table that is never in memory as a whole.
 
     Parameters
@@ -219,7 +219,7 @@ def write_checks(outcome: Outcome, findings: Sequence[Notice], folder: Path) -> 
     tables.write_rows(every, folder / "tables" / "checks.csv", ("run", *_CHECK))
 
 
-def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_Long]:
+def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_LongTable]:
     in_curves = {name for curve in curves for name in curve.outcome.run_names}
 
     def of_runs(rows: Callable[[RunRecord], Iterable[Row]]) -> Callable[[], Iterator[Row]]:
@@ -254,13 +254,13 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
             yield {name: value for name, value in row.items() if name not in _NOT_IN_CURVE}
 
     if outcome.campaign.run:
-        yield _Long("friction.csv", of_runs(segments), ("run", *_SEGMENT))
-        yield _Long("stick_slip.csv", slip, ("run", "segment"))
-        yield _Long("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
+        yield _LongTable("friction.csv", of_runs(segments), ("run", *_SEGMENT))
+        yield _LongTable("stick_slip.csv", slip, ("run", "segment"))
+        yield _LongTable("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
         settled = of_runs(lambda run: (each.row() for each in run.facts.running_in))
-        yield _Long("running_in.csv", settled)
-        yield _Long("stribeck.csv", of_curves(points), ("curve", *_POINT))
+        yield _LongTable("running_in.csv", settled)
+        yield _LongTable("stribeck.csv", of_curves(points), ("curve", *_POINT))
         parts = of_curves(lambda curve: curve.budget)
-        yield _Long("uncertainty_budget.csv", parts, ("curve", *_PART))
+        yield _LongTable("uncertainty_budget.csv", parts, ("curve", *_PART))
     decided = of_runs(lambda run: (decision.row() for decision in run.facts.decisions))
-    yield _Long("decisions.csv", decided)
+    yield _LongTable("decisions.csv", decided)

@@ -95,8 +95,8 @@ def write_report(
     curves = [entry.record for entry in store.all("curve", CurveRecord)]
     surfaces = [entry.record for entry in store.all("surface", SurfaceRecord)]
     models = [entry.record for entry in store.all("model", ModelRecord)]
-    briefs, said, points, along = _runs(outcome)
-    findings = _of_parts(outcome, surfaces, models) + said
+    briefs, said, points, along = _summarise_runs(outcome)
+    findings = _part_notices(outcome, surfaces, models) + said
     shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
     findings += [note for curve in shown for note in curve_notices(curve)]
@@ -152,9 +152,9 @@ def write_report(
         figures=drawn,
     )
     document = report_document(head)
-    write_json(document, _documents(outcome), folder / "report.json")
+    write_json(document, _run_documents(outcome), folder / "report.json")
     on_page = document | {"runs": briefs, "review": review_data(outcome.campaign, briefs)}
-    write_page(on_page, folder, lambda: _documents(outcome), store, live, points)
+    write_page(on_page, folder, lambda: _run_documents(outcome), store, live, points)
     store.save()
     tell("page", 1, 1)
 
@@ -177,13 +177,13 @@ def _figures(
     ]
 
 
-def _documents(outcome: Outcome) -> Iterator[Json]:
+def _run_documents(outcome: Outcome) -> Iterator[Json]:
     """Yield the runs as in report.json."""
     for entry in outcome.store.all("run", RunRecord):
         yield run_document(entry.record)
 
 
-def _runs(
+def _summarise_runs(
     outcome: Outcome,
 ) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[FigureSpec]]:
     """Return short entries and notices of all runs, their points, and figures along runs."""
@@ -208,7 +208,7 @@ def _runs(
     return briefs, said, points, [*along_figures(settled, count), *static_figures(held)]
 
 
-def _of_parts(
+def _part_notices(
     outcome: Outcome, surfaces: Sequence[SurfaceRecord], models: Sequence[ModelRecord]
 ) -> list[Notice]:
     """Return the notices on the campaign and its parts."""

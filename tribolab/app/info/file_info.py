@@ -197,7 +197,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     name = str(scan.attrs.get("instrument", ""))
     axes = [axis for axis in ("x", "y") if scan.sizes.get(axis, 1) > 1]
     lines = [
-        f"{path}: {_titled(name, instrument)}",
+        f"{path}: {_title_of(name, instrument)}",
         f"  {'profile' if axes == ['x'] else 'map'} of "
         f"{' x '.join(str(scan.sizes[axis]) for axis in axes)} points",
     ]
@@ -242,16 +242,16 @@ def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
         from tribolab.reading.unknown.proposal.questions import how_to_keep
 
         told["to_keep_it"] = how_to_keep(str(path))
-    return [f"  {key}: {shown(_said(value), _MAX_TEXT)}" for key, value in told.items()]
+    return [f"  {key}: {shown(_value_text(value), _MAX_TEXT)}" for key, value in told.items()]
 
 
-def _said(value: object) -> str:
+def _value_text(value: object) -> str:
     if isinstance(value, Mapping):
         return "; ".join(f"{name} = {text}" for name, text in value.items())
     return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
-def _titled(name: str, instrument: str | Path | None) -> str:
+def _title_of(name: str, instrument: str | Path | None) -> str:
     """Return a dialect's name with its title; the bare name if another library read the file."""
     known = instrument or (name if name in known_dialects() else None)
     return f"{name} ({load_dialect(known).title})" if known else name

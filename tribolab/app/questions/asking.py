@@ -250,10 +250,10 @@ def _ask_for(
     held = _column_of_any(draft, names)
     if held is not None and held.quantity in names and not (held.guessed or held.fill_in):
         return draft  # nothing is open
-    said = _said_amount(draft, amount)
+    said = _answered_amount(draft, amount)
     if held is None and not said and _states_amount(draft, amount):
         return draft
-    lines, value = ("", None) if held or said else _may_say(draft, amount)
+    lines, value = ("", None) if held or said else _candidate_amount(draft, amount)
     likely = amount_of(value)
     if lines:
         question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
@@ -349,7 +349,7 @@ def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
     return draft.with_understood(understood._replace(kind="run", columns=tuple(columns)))
 
 
-def _said_amount(draft: Draft, amount: str) -> str:
+def _answered_amount(draft: Draft, amount: str) -> str:
     understood = draft.understood
     if understood is None:
         return ""
@@ -379,7 +379,7 @@ def _confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
     return draft.with_understood(understood)
 
 
-def _may_say(draft: Draft, amount: str) -> tuple[str, Amount | None]:
+def _candidate_amount(draft: Draft, amount: str) -> tuple[str, Amount | None]:
     """Return the lines of the file that may state an amount, and that amount."""
     layout, understood = draft.layout, draft.understood
     lack = {"load": "normal_force", "speed": "sliding_velocity"}.get(amount, "")

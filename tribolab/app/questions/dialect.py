@@ -30,14 +30,14 @@ def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
     lines = []
     for file in files:
         try:
-            said = _run_said(file, dialect) if kind == "run" else _scan_said(file, dialect)
+            said = _try_run(file, dialect) if kind == "run" else _try_scan(file, dialect)
         except TribolabError as error:
             said = error.told("terminal").removeprefix(f"{file}: ")
         lines.append(f"tried:  {file.name}: {said}")
     return lines
 
 
-def _run_said(file: Path, dialect: Path) -> str:
+def _try_run(file: Path, dialect: Path) -> str:
     # imported late for a quick start
     from tribolab.arrays.reversals import reversals
     from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
@@ -108,7 +108,7 @@ def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
     return unknown or (by_set_speed and not signed)
 
 
-def _scan_said(file: Path, dialect: Path) -> str:
+def _try_scan(file: Path, dialect: Path) -> str:
     # imported late for a quick start
     from tribolab.reading.scan_files import read_scans
     from tribolab.reading.scans.extent import doubt_about_heights

@@ -95,7 +95,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             ),
         )
         outcomes = tuple(replace(model.outcome, seconds=0.0) for model in ordered)
-        stated = self._stated_of(outcomes)
+        stated = self._largest_uncertainties(outcomes)
         liquid = self._campaign.viscosity_of(medium, stated)
         assert liquid is not None  # without a liquid there are no models
         contacts = {surface: contact_of_label(self._campaign, surface) for surface in surfaces}
@@ -106,7 +106,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             models=outcomes,
             measured=tuple(self._files[outcome.curve] for outcome in outcomes),
             enhancement=tuple(_enhancement(model) for model in ordered),
-            dry=self._dry(surfaces, medium),
+            dry=self._dry_curves(surfaces, medium),
             contacts={surface: contact.bodies() for surface, contact in contacts.items()},
             area=contacts[surfaces[0]].area,
             adhesion=self._campaign.model.adhesion,
@@ -125,16 +125,16 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         ]
         return replace(task, fingerprint=fingerprint_of(sha256_of(shaping)))
 
-    def _stated_of(self, models: Sequence[ModelOutcome]) -> dict[str, float]:
+    def _largest_uncertainties(self, models: Sequence[ModelOutcome]) -> dict[str, float]:
         """Return the largest stated uncertainty of each model input over all curves."""
         each = [self._stated[model.curve] for model in models]
         names = dict.fromkeys(name for stated in each for name in stated)
         return {name: max(stated.get(name, 0.0) for stated in each) for name in names}
 
-    def _dry(self, surfaces: Sequence[str], medium: str) -> tuple[JointDry, ...]:
+    def _dry_curves(self, surfaces: Sequence[str], medium: str) -> tuple[JointDry, ...]:
         """Return the friction of each surface without liquid, if the campaign uses it."""
         name = self._campaign.joint.dry
-        without, within = self._work(name), self._work(medium)
+        without, within = self._work_of_adhesion(name), self._work_of_adhesion(medium)
         if name is None or without is None or within is None:
             return ()
         dry = []
@@ -151,7 +151,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
                 )
         return tuple(dry)
 
-    def _work(self, medium: str | None) -> Work | None:
+    def _work_of_adhesion(self, medium: str | None) -> Work | None:
         table = self._campaign.medium.get(medium or "")
         if table is None or table.work_of_adhesion is None:
             return None

@@ -59,7 +59,7 @@ def fitted(task: JointTask) -> JointRecord:
     dry = {of.surface: contacts for of in task.dry if (contacts := _dry_contacts(task, of))}
     given: Arguments = {
         "speed_error": task.speed_error,
-        "spectrum_error": _bands(task),
+        "spectrum_error": _model_uncertainties(task),
         "area_ratio_error": {
             surface: max(contact.error for contact in contacts) for surface, contacts in dry.items()
         },
@@ -215,7 +215,7 @@ class _WetCurve(NamedTuple):
         return LoadCurve(self.name, self.surface, self.load, self.measured, response)
 
 
-def _wet(task: JointTask) -> list[_WetCurve]:
+def _read_wet_curves(task: JointTask) -> list[_WetCurve]:
     """Read the curves measured in the liquid, and the curves computed for them."""
     # imported late for a quick start
     from tribolab.contact.geometry import make_contact
@@ -230,7 +230,7 @@ def _wet(task: JointTask) -> list[_WetCurve]:
                 surface=model.surface,
                 load=contacts[model.surface].load(model.normal_force),
                 measured=read_data(task.folder / file),
-                computed=_computed(task, model),
+                computed=_computed_curve(task, model),
             )
         )
     return curves
@@ -241,7 +241,7 @@ def other_area_name(task: JointTask) -> str:
     return _OTHER_AREA.get(task.area, "Persson's area")
 
 
-def _computed(task: JointTask, model: ModelOutcome) -> xr.Dataset:
+def _computed_curve(task: JointTask, model: ModelOutcome) -> xr.Dataset:
     """Return the computed curve over the campaign's speeds and the measured speeds."""
     # imported late: xarray loads slowly
     import xarray as xr
@@ -255,7 +255,7 @@ def _computed(task: JointTask, model: ModelOutcome) -> xr.Dataset:
     return curve.assign_attrs(viscosity_Pa_s=task.viscosity)
 
 
-def _bands(task: JointTask) -> dict[str, xr.Dataset]:
+def _model_uncertainties(task: JointTask) -> dict[str, xr.Dataset]:
     """Return the model uncertainty of each surface, at one load for which it is computed."""
     bands: dict[str, xr.Dataset] = {}
     for model in task.models:
@@ -276,17 +276,17 @@ def _variants(
 
     priors = _priors(task)
     constant = replace(priors, speed_exponent=0.0, load_exponent=0.0)
-    beside = _wet(task)
+    beside = _read_wet_curves(task)
     wet, bare, other = (
         [curve.with_response(other_area=area, friction_factors=factors) for curve in beside]
         for area, factors in ((False, True), (False, False), (True, True))
     )
-    usual = [*wet, *_dry(dry)]
+    usual = [*wet, *_dry_load_curves(dry)]
     variants: dict[str, CurvesAndPriors] = {
         POWER_LAW: (usual, priors),
         CONSTANT: (usual, constant),
-        WITHOUT_FACTORS: ([*bare, *_dry(dry)], priors),
-        other_area_name(task): ([*other, *_dry(dry, other=True)], priors),
+        WITHOUT_FACTORS: ([*bare, *_dry_load_curves(dry)], priors),
+        other_area_name(task): ([*other, *_dry_load_curves(dry, other=True)], priors),
     }
     known = [factor for factor in task.enhancement if factor is not None and factor > 0]
     if len(known) == len(wet) and max(known) > 1.001:
@@ -294,11 +294,11 @@ def _variants(
             curve._replace(response=curve.response.enlarged(factor))
             for curve, factor in zip(wet, known, strict=True)
         ]
-        variants[_ADHESIVE] = ([*larger, *_dry(dry, enlarged=True)], priors)
+        variants[_ADHESIVE] = ([*larger, *_dry_load_curves(dry, enlarged=True)], priors)
     return variants
 
 
-def _dry(
+def _dry_load_curves(
     contacts: Mapping[str, Sequence[DryContact]],
     *,
     other: bool = False,

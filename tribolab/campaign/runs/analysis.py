@@ -91,11 +91,11 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     segments, _ = _steady_part(run, signals, found, discard, steady)
     before: tuple[xr.Dataset | None, str] = (None, "")
     if any(decision.moves_numbers for decision in run.decisions):
-        friction, _, said = _examined(run, signals, segments)
+        friction, _, said = _evaluate(run, signals, segments)
         before = friction, said.status
     segments = decide(found, run.decisions, signals)
     segments, whole = _steady_part(run, signals, segments, discard, steady)
-    friction, slip, said = _examined(run, signals, segments)
+    friction, slip, said = _evaluate(run, signals, segments)
     friction.attrs.update(sliding_temperature(signals, segments))
     if run.decisions and before[0] is None:  # the numbers are the same
         before = remove_decisions(friction), said.status_as_found
@@ -139,7 +139,7 @@ def run_labels(run: PlannedRun) -> dict[str, str]:
     }
 
 
-def _examined(
+def _evaluate(
     run: PlannedRun, signals: xr.Dataset, segments: xr.Dataset
 ) -> tuple[xr.Dataset, xr.Dataset, Findings]:
     # imported late for a quick start
@@ -151,7 +151,7 @@ def _examined(
 
     let_go()
     try:
-        friction = friction_coefficient(_stated(run, signals), segments, **run.friction)
+        friction = friction_coefficient(_add_uncertainties(run, signals), segments, **run.friction)
     except StatedZeroError as error:  # an error of the campaign file, not of the raw file
         raise ConfigError(error.what, where=run.zero_uncertainty_at) from error
     if "friction_coefficient" in friction:
@@ -163,7 +163,7 @@ def _examined(
     return friction, slip, check_run(signals, segments, friction, slip, **run.quality)
 
 
-def _stated(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
+def _add_uncertainties(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
     """Return the signals with all stated calibration uncertainties, first the campaign's."""
     stated = signals.attrs.get("uncertainty", {}) | run.uncertainty
     return signals.assign_attrs(uncertainty=stated) if stated else signals

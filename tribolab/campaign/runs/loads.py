@@ -58,15 +58,15 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
         return RunLoad(None, "", None)
     if force[good].max() > _VARIES * force[good].min():
         levels = load_levels(force[good], lasts[good])
-        said = LOAD_STATED if levels and _was_set(signals) else LOAD_VARIES
+        said = LOAD_STATED if levels and _is_set_point(signals) else LOAD_VARIES
         return RunLoad(None, said, None, levels)
     mean = float(np.average(force[good], weights=lasts[good]))
-    if _was_set(signals):
+    if _is_set_point(signals):
         return RunLoad(load_label(mean), LOAD_STATED, None)
     return RunLoad(round_load(mean), LOAD_MEASURED, mean)
 
 
-def _was_set(signals: xr.Dataset) -> bool:
+def _is_set_point(signals: xr.Dataset) -> bool:
     """Whether the load of a run is only a set-point of its steps, not measured."""
     names = ("normal_force", "set_normal_force")
     if any(name not in signals or signals[name].dims != ("time",) for name in names):

@@ -58,7 +58,7 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
         The same with the changes of the analysis.
     """
     attrs = read.attrs
-    if not _is_of_its_files(run, attrs):
+    if not _has_only_its_files(run, attrs):
         return
     mark = mark_of(run, sources_of_run(run, attrs))
     changed = {"attrs": _attribute_changes(attrs, marked.attrs)} | {
@@ -71,7 +71,7 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
         marked.attrs[READING] = {"mark": mark} | changed
 
 
-def _is_of_its_files(run: PlannedRun, attrs: Json) -> bool:
+def _has_only_its_files(run: PlannedRun, attrs: Json) -> bool:
     """Whether only files that are known to belong to the run were read.
 
     A second log or blank run that is not among them may appear, disappear or change.

@@ -25,10 +25,10 @@ def share_loads(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
     for run in came:
         systems.setdefault((run.outcome.surface, run.outcome.medium), []).append(run.outcome)
     loads = {own: load for runs in systems.values() for own, load in _common_loads(runs)}
-    return [_refile(store, run, place, loads) for place, run in enumerate(came)]
+    return [_store_load(store, run, place, loads) for place, run in enumerate(came)]
 
 
-def _refile(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> RunCame:
+def _store_load(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> RunCame:
     """Store a run under its new load, if that has changed."""
     name, measured = run.outcome.name, run.outcome.measured_load
     load = run.outcome.normal_force if measured is None else loads[name, measured]
@@ -55,16 +55,16 @@ def _common_loads(runs: Iterable[RunOutcome]) -> Iterable[tuple[_Own, float]]:
             yield (name, load), min(near, key=lambda other: abs(other - load))
             continue
         if group and load > _MAX_LOAD_RATIO * group[-1][0]:
-            yield from _as_one(group)
+            yield from _mean_load(group)
             group = []
         group.append((load, name))
-    yield from _as_one(group)
+    yield from _mean_load(group)
 
 
 def _measured(run: RunOutcome) -> tuple[float, ...]:
     return run.measured_levels if run.measured_load is None else (run.measured_load,)
 
 
-def _as_one(group: Sequence[tuple[float, str]]) -> Iterable[tuple[_Own, float]]:
+def _mean_load(group: Sequence[tuple[float, str]]) -> Iterable[tuple[_Own, float]]:
     for own, name in group:
         yield (name, own), round_load(sum(load for load, _ in group) / len(group))

@@ -79,7 +79,7 @@ class Catalogue:
 
         A missing or damaged catalogue, or one of another format, counts as empty.
         """
-        return Catalogue(_opened(folder))
+        return Catalogue(_open_catalogue(folder))
 
     def get(self, kind: str, name: str, record: type[Kept]) -> Entry[Kept] | None:
         """Return a part; None if it is unknown."""
@@ -355,7 +355,7 @@ def _adapter(record: type[Kept]) -> TypeAdapter[Kept]:
     return _ADAPTERS[record]
 
 
-def _opened(folder: Path | None) -> sqlite3.Connection | None:
+def _open_catalogue(folder: Path | None) -> sqlite3.Connection | None:
     """Open the catalogue of earlier results for reading."""
     if folder is None:
         return None

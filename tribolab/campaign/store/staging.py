@@ -89,7 +89,7 @@ def staged(output: str | Path) -> Iterator[Path]:
         _keep_foreign_files(ledger, room / "new")
         _swap(room, output)
     except OSError as error:
-        if not _is_about(error, room, output):
+        if not _concerns_writing(error, room, output):
             raise
         raise OutputError(f"{output}: {_cure(error)}; what was there is untouched") from error
     finally:
@@ -310,7 +310,7 @@ def exchange(former: Path, latter: Path) -> bool:
     raise OSError(number, os.strerror(number), str(latter))
 
 
-def _is_about(error: OSError, room: Path, output: Path) -> bool:
+def _concerns_writing(error: OSError, room: Path, output: Path) -> bool:
     """Whether an error concerns writing here: one of our files, or e.g. a full disk."""
     if error.filename is None:
         return error.errno in CURES

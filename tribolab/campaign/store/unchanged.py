@@ -119,7 +119,7 @@ def unchanged(
     made = catalogue.fact(_FACT)
     if not made or made != fingerprint(campaign, runs, options):
         return None
-    sources: list[Source] = [(str(n), str(c), int(b)) for n, c, b in _listed(catalogue)]
+    sources: list[Source] = [(str(n), str(c), int(b)) for n, c, b in _stored_sources(catalogue)]
     files = _inputs(campaign, runs)
     known = {} if verify else catalogue.files()
     if not _are_same(files, known, {n: c for n, c, _ in sources}):
@@ -128,22 +128,22 @@ def unchanged(
         campaign=campaign,
         folder=place,
         store=catalogue,
-        runs=_as_before(catalogue.outcomes("run", RunOutcome)),
+        runs=_mark_reused(catalogue.outcomes("run", RunOutcome)),
         curves=tuple(catalogue.outcomes("curve", CurveOutcome)),
         sources=tuple(sources),
-        surfaces=_as_before(catalogue.outcomes("surface", SurfaceOutcome)),
-        models=_as_before(catalogue.outcomes("model", ModelOutcome)),
+        surfaces=_mark_reused(catalogue.outcomes("surface", SurfaceOutcome)),
+        models=_mark_reused(catalogue.outcomes("model", ModelOutcome)),
         foreign=tuple(ledger.foreign(intact)),
         lost_decisions=lost_decisions(campaign.file, [run.name for run in runs]),
     )
 
 
-def _listed(catalogue: Catalogue) -> list[list[str]]:
+def _stored_sources(catalogue: Catalogue) -> list[list[str]]:
     listed: list[list[str]] = json.loads(catalogue.fact(_SOURCES) or "[]")
     return listed
 
 
-def _as_before(parts: Sequence[AnyOutcome]) -> tuple[AnyOutcome, ...]:
+def _mark_reused(parts: Sequence[AnyOutcome]) -> tuple[AnyOutcome, ...]:
     return tuple(replace(part, reused=part.status == "done") for part in parts)
 
 

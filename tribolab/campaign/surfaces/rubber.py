@@ -107,7 +107,7 @@ def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
         table = read_modulus(path, sweep, unit=unit)
         findings.extend(Finding("note", f"{label}: {said}") for said in table.remarks)
         omega = table.angular_frequency
-        findings.extend(_far_from(stiffness, float(table(omega[0]).real), omega[0], label))
+        findings.extend(_modulus_mismatch(stiffness, float(table(omega[0]).real), omega[0], label))
         return _Rubber(table, label, omega)
     if moduli := surface.rubber.get("prony_moduli"):
         times = surface.rubber["prony_times"]
@@ -143,7 +143,7 @@ def _shift_modulus(rubber: _Rubber, stated: Arguments) -> _Rubber:
     return _Rubber(modulus, f"{rubber.origin}, shifted from {before} to {after} °C", omega)
 
 
-def _far_from(stiffness: float, slow: float, frequency: float, label: str) -> list[Finding]:
+def _modulus_mismatch(stiffness: float, slow: float, frequency: float, label: str) -> list[Finding]:
     """Return text if a measured modulus does not match that of the contact."""
     if 1 / _SAME_RUBBER <= slow / stiffness <= _SAME_RUBBER:
         return []

@@ -104,7 +104,7 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         mine = [series for series in spec.series if series.panel == number]
         x, y = seen[number]
         named = list(legend(mine).values())
-        along = _shared(spec, number, seen)
+        along = _x_range(spec, number, seen)
         small = len(spec.panels) <= _MAX_WITH_SMALL_TICKS
         _scale_axis(axes, "x", panel.x, along, small)
         _scale_axis(axes, "y", panel.y, y, small)
@@ -113,12 +113,14 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         for series in sorted(mine, key=lambda series: series.style != "band"):
             label = series.label if any(series is one for one in named) else ""
             _series(axes, series, y, mine, plain(label, _MAX_LEGEND_ENTRY) or "_nolegend_")
-            _keep(sheet.figure, spec, series)
+            _store(sheet.figure, spec, series)
         for mark in spec.marks:
             if mark.panel == number:
                 _mark(axes, mark)
         _write_labels_above(
-            axes, [mark for mark in spec.marks if mark.panel == number], _shared(spec, number, seen)
+            axes,
+            [mark for mark in spec.marks if mark.panel == number],
+            _x_range(spec, number, seen),
         )
         if any(series.style == "heat" for series in mine):
             _colour_bar(axes)
@@ -143,7 +145,7 @@ def _is_first(spec: FigureSpec, number: int) -> bool:
     return not any(panel.y.label == spec.panels[number].y.label for panel in row)
 
 
-def _shared(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
+def _x_range(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
     """Return the range of a panel's abscissa, shared by panels with the same abscissa."""
     own = spec.panels[number].x
     alike = [x for panel, (x, _) in zip(spec.panels, seen, strict=True) if panel.x == own]
@@ -360,7 +362,7 @@ def _key(axes: Axes, key: Key) -> None:
     )  # fmt: skip
 
 
-def _keep(figure: Figure, spec: FigureSpec, series: Series) -> None:
+def _store(figure: Figure, spec: FigureSpec, series: Series) -> None:
     """Store the numbers of a series for `figure_data`."""
     columns, panel = series.columns or {}, spec.panels[series.panel]
     if "" in columns:

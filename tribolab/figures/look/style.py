@@ -216,7 +216,7 @@ def _shorten_svg(text: str) -> str:
     return text
 
 
-class _KnownTexts(TextToPath):
+class _CachedTexts(TextToPath):
     """Text renderer that typesets a formula and measures a text only once for all figures."""
 
     _formulas = MathTextParser("path")
@@ -235,17 +235,17 @@ class _KnownTexts(TextToPath):
 def _measured(
     text: str, font: FontProperties, formula: bool | Literal["TeX"]
 ) -> tuple[float, float, float]:
-    return TextToPath.get_text_width_height_descent(_KnownTexts(), text, font, formula)
+    return TextToPath.get_text_width_height_descent(_CachedTexts(), text, font, formula)
 
 
 @contextlib.contextmanager
-def _texts_set_once() -> Iterator[None]:
+def _share_text_cache() -> Iterator[None]:
     """Let all renderers share one cache of texts.
 
     By default every renderer has its own parser and cache.
     """
     own = vars(mpl_text)["TextToPath"]
-    vars(mpl_text)["TextToPath"] = _KnownTexts
+    vars(mpl_text)["TextToPath"] = _CachedTexts
     try:
         yield
     finally:
@@ -268,7 +268,7 @@ def svg(figure: Figure) -> str:
     True
     """
     buffer = io.StringIO()
-    with paper_style(), _texts_set_once():
+    with paper_style(), _share_text_cache():
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "tribolab"})
     return _shorten_svg(buffer.getvalue())
 

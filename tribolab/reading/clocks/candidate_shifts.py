@@ -43,7 +43,7 @@ class Candidate(NamedTuple):
         >>> Candidate(0.0, 0.01, 100.0, 3).beats(Candidate(9.0, 0.05, 80.0, 7))
         False
         """
-        more, likelihood = self._against(other)
+        more, likelihood = self._compare(other)
         sees_all = self.changes >= limits.MIN_CHANGES_IN_LOG.value * other.changes
         return bool(
             sees_all
@@ -71,13 +71,13 @@ class Candidate(NamedTuple):
         >>> Candidate(0.0, 0.06, 130.0, 12).surpasses(Candidate(1.7, 0.16, 67.0, 12))
         True
         """
-        more, likelihood = self._against(other)
+        more, likelihood = self._compare(other)
         return bool(
             more > limits.MIN_MISFIT_WITH_FEWER_CHANGES.value
             and likelihood > limits.MIN_LIKELIHOOD_WITH_FEWER_CHANGES.value
         )
 
-    def _against(self, other: Candidate) -> tuple[float, float]:
+    def _compare(self, other: Candidate) -> tuple[float, float]:
         """Return the ratio of unexplained shares, and the log likelihood ratio."""
         more = other.unexplained / max(self.unexplained, 1e-12)
         freedom = min(self.freedom, other.freedom)

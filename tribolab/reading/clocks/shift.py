@@ -185,7 +185,7 @@ def _estimated(
         estimate = starts if told is not None and vaguer else onsets
     # slack or sticking would delay slow starts more, which only the first method uses
     twice = wide and not weak and told is not None and onsets is not starts
-    twice = twice and _alike(starts, onsets, basis.stroke)
+    twice = twice and _starts_agree(starts, onsets, basis.stroke)
     if vague and not twice:
         return None
     # starts with a large error were searched at a wrong position
@@ -250,13 +250,13 @@ def _estimated(
         and abs(estimate.shift - shift) > limits.MAX_DISTANCE_TO_CLASSES.value * stroke
     ):
         may = candidates(force_time, force, basis, np.array([estimate.shift, *coarse.rivals]))
-        return estimate._replace(refused=_doubt_of_moved(may, stroke))
+        return estimate._replace(refused=_doubt_about_starts(may, stroke))
     rivals = [rival for rival in may if rival is not chosen]
     doubt = _doubt(estimate, fit, coarse.half, stroke, chosen, rivals)
     return estimate._replace(refused=doubt)
 
 
-def _doubt_of_moved(may: list[Candidate], stroke: float) -> str:
+def _doubt_about_starts(may: list[Candidate], stroke: float) -> str:
     """Return why a shift moved far from the velocity classes by the starts may be wrong."""
     for rival in may[1:]:
         if rival.outdoes(may[0]) and abs(rival.shift - may[0].shift) > 0.5 * stroke:
@@ -274,7 +274,7 @@ def _has_different_speeds(motion: Motion, way: NDArray[np.int64]) -> bool:
     return bool(fastest.max() > limits.MAX_SPEED_RATIO.value * fastest.min())
 
 
-def _alike(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
+def _starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
     """Whether starts at all speeds and those of fast strokes of a duration [s] agree."""
     sharp = (
         max(starts.uncertainty, onsets.uncertainty) < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke

@@ -124,7 +124,7 @@ def _no_value(values: np.ndarray) -> bool:
 
 def _clean(content: Content, dialect: Dialect) -> Content:
     """Remove optional columns without values; raise if another column has none."""
-    content = _orient_load(_chosen(_remove_impossible(_remove_sentinels(content))), dialect)
+    content = _orient_load(_choose_columns(_remove_impossible(_remove_sentinels(content))), dialect)
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
@@ -175,7 +175,7 @@ def _orient_load(content: Content, dialect: Dialect) -> Content:
     return content._replace(pieces=pieces)
 
 
-def _chosen(content: Content) -> Content:
+def _choose_columns(content: Content) -> Content:
     """Of several columns for one quantity, keep the first that is filled."""
     keys = dict.fromkeys(key for piece in content.pieces for key in piece.columns)
     parts = {
@@ -185,14 +185,14 @@ def _chosen(content: Content) -> Content:
     chosen = first_filled(parts)
     if not chosen:
         return content
-    pieces = [piece._replace(columns=_named(piece.columns, chosen)) for piece in content.pieces]
+    pieces = [piece._replace(columns=_renamed(piece.columns, chosen)) for piece in content.pieces]
     left = [key for key in keys if key.split(AGAIN)[0] in chosen and key not in chosen.values()]
     unused = tuple(f"{content.labels[key]} (another column is filled)" for key in left)
-    labels = _named(content.labels, chosen)
+    labels = _renamed(content.labels, chosen)
     return content._replace(pieces=pieces, labels=labels, not_used=content.not_used + unused)
 
 
-def _named(columns: Mapping[str, _T], chosen: Mapping[str, str]) -> dict[str, _T]:
+def _renamed(columns: Mapping[str, _T], chosen: Mapping[str, str]) -> dict[str, _T]:
     """Name the chosen columns after their quantities, and leave out the others."""
     kept = {
         key: value for key, value in columns.items() if chosen.get(key.split(AGAIN)[0], key) == key

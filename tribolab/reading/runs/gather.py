@@ -99,7 +99,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     zeros_of_derived(columns, signals, attrs)
     read = take_zeros(columns, time, _zeros_of_formulas(attrs, dialect, zero), blank, where)
     if read:
-        attrs |= read | {"zeros_read": {**_told(attrs, "zeros_read"), **read["zeros_read"]}}
+        attrs |= read | {"zeros_read": {**_by_quantity(attrs, "zeros_read"), **read["zeros_read"]}}
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect, of_steps)
@@ -112,7 +112,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     return Signals(time, columns, attrs)
 
 
-def _told(attrs: Json, name: str) -> Mapping[str, Any]:
+def _by_quantity(attrs: Json, name: str) -> Mapping[str, Any]:
     """Return an attribute that is a mapping by quantity; empty without one."""
     told = attrs.get(name, {})
     return told if isinstance(told, Mapping) else {}
@@ -122,7 +122,7 @@ def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[
     """Return the source of the zeros of computed quantities."""
     rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
     rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
-    return {name: text for name, text in rules.items() if name in _told(attrs, "derived")}
+    return {name: text for name, text in rules.items() if name in _by_quantity(attrs, "derived")}
 
 
 def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:

@@ -63,7 +63,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
         if name == "time" or name in QUANTITIES:
             dims = ", ".join(map(str, run[name].dims))
             raise ReadError(
-                f"{path}: variable '{name}' ({dims}) holds {_held(run[name])}; a run's quantities "
+                f"{path}: variable '{name}' ({dims}) holds {_kind(run[name])}; a run's quantities "
                 "are numbers along (time): write it so, or leave it out"
             )
     run = run.drop_vars(strange)
@@ -84,15 +84,15 @@ def _along_time(variable: xr.DataArray) -> bool:
     return variable.dims in (("time",), ()) and variable.dtype.kind in _NUMBERS
 
 
-def _held(variable: xr.DataArray) -> str:
+def _kind(variable: xr.DataArray) -> str:
     return "numbers" if variable.dtype.kind in _NUMBERS else "text or dates"
 
 
 def _attributes(attrs: Mapping[Any, Any]) -> Json:
-    return {str(name): value for name, value in attrs.items() if _says_something(str(name), value)}
+    return {str(name): value for name, value in attrs.items() if _is_valid(str(name), value)}
 
 
-def _says_something(name: str, value: Any) -> bool:
+def _is_valid(name: str, value: Any) -> bool:
     if name in _KINDS:
         return isinstance(value, _KINDS[name])
     if name in _COUNTS or name.endswith(_UNITS):

@@ -48,14 +48,14 @@ def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
         pattern = guarded(dialect.header.only)
         meant = [piece for piece in pieces if pattern.search(_title(piece))]
         if not meant:
-            titles = _told(pieces)
+            titles = _titles(pieces)
             what = f"no table's text matches '{shown(dialect.header.only)}'; there are: {titles}"
             raise ReadError(what, where=path)
         return meant
-    if len(pieces) > 1 and not _alike(pieces):
+    if len(pieces) > 1 and not _are_traces(pieces):
         raise ReadError(
             f"{len(pieces)} tables of heights are in the file, which are no traces of one scan "
-            f"by what is written above them: {_told(pieces)}; say which are meant with only = "
+            f"by what is written above them: {_titles(pieces)}; say which are meant with only = "
             f"'{shown(_title(pieces[0]) or '...', 30)}' in [header] of a description of it",
             where=path,
         )
@@ -68,7 +68,7 @@ def _title(piece: Piece) -> str:
     return lines[-1] if lines else ""
 
 
-def _alike(pieces: list[Piece]) -> bool:
+def _are_traces(pieces: list[Piece]) -> bool:
     titles = [_title(piece) for piece in pieces]
     if any(_VERSIONS.search(title) for title in titles[1:]) and len(set(titles)) > 1:
         return False
@@ -76,7 +76,7 @@ def _alike(pieces: list[Piece]) -> bool:
     return len({_NUMBERS.sub("", title).strip() for title in titles[1:]}) <= 1
 
 
-def _told(pieces: list[Piece]) -> str:
+def _titles(pieces: list[Piece]) -> str:
     titles = [f"'{shown(_title(piece) or 'without a title', 40)}'" for piece in pieces]
     more = f" and {len(titles) - _TOLD} more" if len(titles) > _TOLD else ""
     return ", ".join(titles[:_TOLD]) + more

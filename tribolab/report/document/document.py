@@ -94,7 +94,7 @@ def report_head(
         campaign=_campaign(outcome.campaign),
         verdict=verdict(runs, rejected, len(outcome.lost_decisions))
         if outcome.campaign.run
-        else _of_surfaces(outcome.surfaces, rejected),
+        else _scan_verdict(outcome.surfaces, rejected),
         thresholds=THRESHOLDS,
         findings=tuple(ReportedFinding(*finding) for finding in findings),
         sources=tuple(SourceFile(*source) for source in outcome.sources),
@@ -111,7 +111,7 @@ def report_head(
     )
 
 
-def _of_surfaces(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -> CampaignVerdict:
+def _scan_verdict(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -> CampaignVerdict:
     """Return the verdict on a campaign that measured surfaces only."""
     scanned = [surface for surface in surfaces if surface.files]
     done = sum(surface.done for surface in scanned)

@@ -146,13 +146,13 @@ def _run(
         style="points",
         colour=colour,
         error=[point.within for point in points],
-        hover=[_told(point) for point in points],
+        hover=[_tooltip(point) for point in points],
         link=(name,),
         **(labels | {"runs": (name,)}),
     )
 
 
-def _told(point: RunPoint) -> str:
+def _tooltip(point: RunPoint) -> str:
     within = "not known" if point.within is None else f"± {number(point.within, 2)}"
     return (
         f"{point.run}\nv = {plain_speed(point.speed)}\nµ = {number(point.mu)}\n"

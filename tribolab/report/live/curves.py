@@ -136,7 +136,7 @@ def _card(
         title=name,
         alt=f"Friction coefficient over sliding speed of {name}: {many(len(curves), 'load')}, "
         f"{speeds(every)}, µ {span(values)}.",
-        series=tuple(_on_card(series, one_load) for series in spec.series),
+        series=tuple(_card_style(series, one_load) for series in spec.series),
         one_load=one_load,
         width="card",
         height=230,
@@ -154,7 +154,7 @@ def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSp
     return replace(spec, panels=(replace(spec.panels[0], x=axis),), series=tuple(series))
 
 
-def _on_card(series: Series, one_load: bool) -> Series:
+def _card_style(series: Series, one_load: bool) -> Series:
     """Return a series in the style of cards: points not joined, a single load unshaded."""
     if series.label == _AS_FOUND:
         return replace(series, colour=GREY, shade=0.0, open=True, joined=False)
@@ -218,12 +218,12 @@ def _measured(known: FrictionOverSpeed, curve: CurveRecord, label: str) -> xr.Da
     for row in rows:
         points = at_speed(every, float(row[_SPEED] or 0.0))
         error = point_error(row, points)
-        words.append(told_point(row, error, points, _briefly(curve.uncertainty_says)))
+        words.append(told_point(row, error, points, _first_component(curve.uncertainty_says)))
         targets.append(points[0].run if points else curve.outcome.run_names[0])
     return _dataset(outcome, rows, label, hover=words, link=targets)
 
 
-def _briefly(says: str) -> str:
+def _first_component(says: str) -> str:
     """Return the first component missing from an uncertainty, short enough for a tooltip."""
     return says.partition(";")[0].partition(", because")[0]
 
@@ -255,7 +255,7 @@ def slide_roll_ratio(curve: CurveRecord) -> float | None:
     return None
 
 
-def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
+def _near_measured(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
     """Return the rows of a model within a decade around the measured speeds."""
     known = [float(row["sliding_speed_m_s"] or 0) for row in curve.points]
     low, high = min(known) / 10, max(known) * 10
@@ -264,7 +264,7 @@ def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
 
 def _modelled(known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord) -> list[xr.Dataset]:
     """Return the computed curve with its band, within a decade around the measured speeds."""
-    rows = _within(model.curve, curve)
+    rows = _near_measured(model.curve, curve)
     if not rows:
         return []
     data = _dataset(curve.outcome, rows, "model")

@@ -84,8 +84,8 @@ def shear_stress_figure(models: Sequence[ModelRow], surfaces: Sequence[str]) -> 
             "medium": row.model.medium,
             "normal_force_N": row.model.normal_force,
             "corrected_u95_Pa": shear_stress_u95(fit, fit["corrected_shear_stress_error_Pa"]),
-            "hover": _told(row, fit, ""),
-            "corrected_hover": _told(row, fit, "corrected_"),
+            "hover": _stress_tooltip(row, fit, ""),
+            "corrected_hover": _stress_tooltip(row, fit, "corrected_"),
         }
         for row in models
         if (fit := row.fit) and fit["shear_stress_Pa"] > 0
@@ -102,7 +102,7 @@ def shear_stress_figure(models: Sequence[ModelRow], surfaces: Sequence[str]) -> 
     )
 
 
-def _told(row: ModelRow, fit: Mapping[str, Any], name: str) -> str:
+def _stress_tooltip(row: ModelRow, fit: Mapping[str, Any], name: str) -> str:
     error = "corrected_shear_stress_error_Pa" if name else "shear_stress_total_error_Pa"
     u95 = shear_stress_u95(fit, fit[error]) * _MPA
     value = error_text(fit[f"{name}shear_stress_Pa"] * _MPA, u95, " MPa")
@@ -134,7 +134,7 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Figur
                 [str(change["variation"]) for change in varied],
                 style="bars",
                 colour=colours[row.model.surface],
-                hover=[_moved(change) for change in varied],
+                hover=[_change_tooltip(change) for change in varied],
                 **_labels(row),
             )
         )
@@ -154,7 +154,7 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Figur
     )
 
 
-def _moved(change: Row) -> str:
+def _change_tooltip(change: Row) -> str:
     share, speed = (number_of(change, f"largest_change{end}") for end in ("", "_speed_m_s"))
     lines = [str(change["variation"]), f"{change['low'] or '–'} to {change['high'] or '–'}"]
     lines.append(f"moves µ by {percent(share)} of the curve's height")

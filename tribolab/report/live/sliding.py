@@ -124,7 +124,7 @@ def _waveform_curve(contact: Judged) -> xr.Dataset:
     columns = {
         "waveform": [str(row["waveform"]) for row in rows],
         "drop": np.array(drops, float),
-        "hover": [_seen(contact, row) for row in rows],
+        "hover": [_waveform_tooltip(contact, row) for row in rows],
         "link": [contact.curve.run_names[0]] * len(rows),
     }
     labels = labels_of(contact.curve)
@@ -147,7 +147,7 @@ def _waveform_note(waveforms: Collection[str]) -> str:
     return f"Open: steady sliding{undecided}; filled: friction rises and falls."
 
 
-def _seen(contact: Judged, row: Mapping[str, Any]) -> str:
+def _waveform_tooltip(contact: Judged, row: Mapping[str, Any]) -> str:
     lines = [_name(contact.curve), f"v = {plain_speed(row['sliding_speed_m_s'])}"]
     lines.append(" ".join(filter(None, (row["regularity"], row["waveform"]))))
     if row["drop"] is not None:
@@ -169,7 +169,7 @@ def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> Figure
                     [row["dominant_frequency_Hz"] for row in rows],
                     style="points",
                     colour=colours[contact.curve.name],
-                    hover=[_seen(contact, row) for row in rows],
+                    hover=[_waveform_tooltip(contact, row) for row in rows],
                     link=(contact.curve.run_names[0],),
                     **labels_of(contact.curve),
                 )

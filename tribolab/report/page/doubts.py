@@ -41,10 +41,10 @@ def doubts(document: Mapping[str, Any]) -> list[Doubt]:
     """
     found = [*_of_findings(document), *_missing_curves(document)]
     found.sort(key=lambda doubt: _GRAVE.index(doubt.level))
-    return [*_left_out(document["runs"]), *_odd(document["runs"]), *found, *_notes(document)]
+    return [*_left_out(document["runs"]), *_odd_runs(document["runs"]), *found, *_notes(document)]
 
 
-def _odd(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
+def _odd_runs(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
     """Yield the runs that contradict their repeats."""
     odd = [
         (run["name"], row["message"])
@@ -133,11 +133,11 @@ def _missing_curves(document: Mapping[str, Any]) -> Iterable[Doubt]:
             conditions.setdefault(key, []).append(run)
     for (surface, medium, load), runs in conditions.items():
         condition = f"{system_name(surface, medium)}, {force_text(load)}"
-        if reason := _why(runs):
+        if reason := _missing_reason(runs):
             yield Doubt("suspect", condition, f"no curve, {reason}", "", "#runs")
 
 
-def _why(runs: Sequence[Mapping[str, Any]]) -> str:
+def _missing_reason(runs: Sequence[Mapping[str, Any]]) -> str:
     """Return why runs of one condition give no curve; "" if they lack segments."""
     failed = [run for run in runs if run["status"] != "done"]
     rejected = [run for run in runs if run["status"] == "done" and is_bad(run)]

@@ -74,12 +74,12 @@ def listed_runs(
         shown_as = _STEADY, *shown_as
         means = {run["name"]: [_steady(run), *means[run["name"]]] for run in runs}
     off = _deviations(runs, means)
-    shown = 0 if _STEADY in shown_as else _most_common(list(means.values()))
+    shown = 0 if _STEADY in shown_as else _most_common_speed(list(means.values()))
     rows = []
     for place, run in enumerate(runs, start=1):
         name, unit = run["name"], UNITS.get(run["quantity"] or "", "")
         values = tuple(
-            (error_text(mu, None, unit) if mu is not None else "", _signed(deviation))
+            (error_text(mu, None, unit) if mu is not None else "", _signed_percent(deviation))
             for mu, deviation in zip(means[name], off[name], strict=True)
         )
         spark = spark_path(traces[name]) if name in traces else ""
@@ -111,7 +111,7 @@ def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
     return speeds
 
 
-def _most_common(means: Sequence[Sequence[float | None]]) -> int:
+def _most_common_speed(means: Sequence[Sequence[float | None]]) -> int:
     """Return the index of the speed with most runs; of several the middle one."""
     counts = [sum(value is not None for value in column) for column in zip(*means, strict=True)]
     best = [place for place, count in enumerate(counts) if count == max(counts)]
@@ -163,7 +163,7 @@ def _deviations(
     return off
 
 
-def _signed(share: float | None) -> str:
+def _signed_percent(share: float | None) -> str:
     """Return a deviation in percent with its sign, with one decimal below ten percent."""
     if share is None:
         return ""

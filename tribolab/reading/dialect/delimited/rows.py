@@ -55,7 +55,7 @@ class RowParser:
         try:
             table = self._arrow(view, types)
         except pa.ArrowInvalid as error:
-            table = self._second_try(bytes(view), place, last, types, error)
+            table = self._parse_incomplete(bytes(view), place, last, types, error)
         return [
             [self._numbers(name, piece) for piece in table[name].chunks] for name in self._wanted
         ]
@@ -87,7 +87,7 @@ class RowParser:
             convert_options=arrow_csv.ConvertOptions(**self._convert, column_types=types),
         )
 
-    def _second_try(
+    def _parse_incomplete(
         self, block: bytes, place: int, last: bool, types: Arguments, error: Exception
     ) -> pa.Table:
         """Parse again without an incomplete last row; else raise with a diagnosis.

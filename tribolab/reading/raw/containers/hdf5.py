@@ -78,12 +78,12 @@ class _Found:
             rows = item[()]
             for place, field in enumerate(item.dtype.names):
                 unit = own[place] or _of_field(item, place)
-                self._take(name, str(field), rows[field], unit)
+                self._add(name, str(field), rows[field], unit)
         elif labels:
             matrix = item[()]
             for place, label in enumerate(labels):
                 own = _split_units(units, len(labels))
-                self._take(name, label, matrix[:, place], own[place])
+                self._add(name, label, matrix[:, place], own[place])
         elif item.dtype.kind == "O" and self._h5py.check_dtype(ref=item.dtype):
             self._elements(name, item)
         elif _is_char(item):
@@ -91,7 +91,7 @@ class _Found:
         elif item.dtype.kind in "fiu" and item.size == max(item.shape, default=0):
             unit = units if isinstance(units, str) else None
             group, _, label = name.rpartition("/")
-            self._take(group, label, item[()], unit, meaning if isinstance(meaning, str) else "")
+            self._add(group, label, item[()], unit, meaning if isinstance(meaning, str) else "")
 
     def tell(self, name: str, item: Any) -> None:
         """Store attributes and single values as settings of their group."""
@@ -102,20 +102,20 @@ class _Found:
         for key, value in getattr(item, "attrs", {}).items():
             if key not in _OF_HDF5 and not key.startswith(("FIELD_", "_nc", "_Netcdf4")):
                 if np.size(value) == 1:
-                    self._say(group, key, value)
+                    self._add_setting(group, key, value)
         if is_data and item.size == 1 and item.dtype.kind in "fiu" and not _is_char(item):
             unit = _first(item, _UNITS)
             text = f"{plain(item[()])} {unit if isinstance(unit, str) else ''}".strip()
-            self._say(group, own, text)
+            self._add_setting(group, own, text)
         elif is_data and item.shape == () and item.dtype.kind in "OS":
-            self._say(group, own, item[()])
+            self._add_setting(group, own, item[()])
         elif is_data and _is_char(item):
-            self._say(group, own, _matlab_text(item))
+            self._add_setting(group, own, _matlab_text(item))
 
-    def _say(self, group: str, key: str, value: object) -> None:
+    def _add_setting(self, group: str, key: str, value: object) -> None:
         self.groups.add_settings(group, settings_of(key, value, group))
 
-    def _take(
+    def _add(
         self, group: str, label: str, values: np.ndarray, unit: object, meaning: str = ""
     ) -> None:
         single = values.dtype.kind not in "fiu" or values.size < 2
@@ -136,11 +136,11 @@ class _Found:
                 raise refused(Path(item.file.filename), f"{name}({number})", what)
             element = f"{group}({number})" if group else f"({number})"
             if _is_char(target):
-                self._say(element, field, _matlab_text(target))
+                self._add_setting(element, field, _matlab_text(target))
             elif target.dtype.kind in "fiu" and target.size == 1:
-                self._say(element, field, plain(target[()]))
+                self._add_setting(element, field, plain(target[()]))
             elif target.dtype.kind in "fiu" and target.size:
-                self._take(element, field, target[()], None)
+                self._add(element, field, target[()], None)
 
 
 def _is_char(item: Any) -> bool:
