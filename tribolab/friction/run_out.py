@@ -2,22 +2,20 @@
 
 Notes
 -----
-A disc that runs out moves the friction once (and twice) per turn. Over whole turns that cancels,
-however few they are; a spectrum of the record alone cannot know this of one or two turns and takes
-them for a slow wander. Where the rotation is recorded, the waves are fitted at its angle [1]_ and
-the error of the mean is that of the rest, and beside it what a wave of this size, at any phase,
-leaves in the mean over an unfinished turn, ``A abs(sin(pi k) / (pi k)) / sqrt(2)`` after k turns.
-A wave is believed where it stands far above the spectrum of what is left.
+Run-out of a disc changes friction once (and twice) per turn. Over whole turns this cancels, however
+few they are; in a spectrum, one or two turns look like slow drift. If the rotation is recorded, the
+waves are fitted at its angle [1]_. The error of the mean is that of the residuals combined with the
+effect of a wave of this size, at any phase, on the mean over an incomplete turn, ``A abs(sin(pi k)
+/ (pi k)) / sqrt(2)`` after k turns. A wave is accepted if it is far above the residual spectrum.
 
-Of more than a sixth as many turns as a record has stretches, the stretches do not show the wave's
-course, and what they keep of it looks like a line beside which slow noise is overlooked. There the
-waves are fitted to shorter stretches, `_STRETCHES_PER_TURN` of each turn, and subtracted whether
-they are significant or not: they hardly change the mean. If the recorded speed is wrong by up to
-`MAX_ERROR_OF_SPEED`, the wave would run out of step over many turns; the angle is stretched to
-where the wave is largest.
+If there are more than a sixth as many turns as intervals in a record, the intervals do not resolve
+the wave, and its remainder looks like a line that hides slow noise. Then the waves are fitted to
+shorter intervals, `_STRETCHES_PER_TURN` per turn, and subtracted whether significant or not: they
+hardly change the mean. If the recorded speed is wrong by up to `MAX_ERROR_OF_SPEED`, the wave would
+lose phase over many turns; the angle is stretched to maximise the wave.
 
-Less than a turn tells neither the size of the wave nor its middle: the error is widened to what
-the part that is seen may hide in the worst case, half a turn about a crest.
+Less than a turn determines neither the size of the wave nor its mean: the error is increased to the
+worst case, a part of a turn around a crest.
 
 References
 ----------
@@ -34,28 +32,28 @@ import numpy as np
 
 from tribolab.friction import limits
 
-MAX_COARSE_TURNS = 64.0  # turns in a record: of more, finer stretches of time are looked at
-_TURNS_OF_SECOND_ORDER = 2.0  # turns from which on a wave twice per turn is looked for, too
-_MIN_TURNS = 0.25  # of a turn: less is taken for as much
-_STRETCHES_PER_TURN, _MIN_STRETCHES_PER_TURN = 8, 4  # stretches of each of many turns
-# stretches: of more turns, 16 and more are averaged in each of the coarse ones
+MAX_COARSE_TURNS = 64.0  # turns in a record: for more, finer intervals of time are used
+_TURNS_OF_SECOND_ORDER = 2.0  # turns above which a wave twice per turn is also fitted
+_MIN_TURNS = 0.25  # smallest part of a turn assumed
+_STRETCHES_PER_TURN, _MIN_STRETCHES_PER_TURN = 8, 4  # intervals per turn for many turns
+# most intervals: for more turns, at least 16 are averaged in each coarse one
 _MAX_STRETCHES = 6144
 
 
 class Wave(NamedTuple):
-    """What repeats a whole number of times per turn, as it was fitted to a record."""
+    """Wave with a whole number of periods per turn, fitted to a record."""
 
-    signal: np.ndarray  # over the record's stretches, in the signal's unit
+    signal: np.ndarray  # over the record's intervals, in the signal's unit
     amplitude: float
-    turns: float  # of the wave: twice those of the rig, if it repeats twice
+    turns: float  # periods of the wave: twice the turns of the rig, if it repeats twice
 
     @property
     def left(self) -> float:
-        """Standard error that an unfinished turn leaves in the mean, whatever its phase."""
+        """Standard error that an incomplete turn leaves in the mean, averaged over the phase."""
         return float(self.amplitude * abs(np.sinc(self.turns)) / np.sqrt(2))
 
     def stands_out(self, power: np.ndarray) -> bool:
-        """Whether it is far above the spectrum of what is left, from 0 to half the sampling."""
+        """Return whether the wave is far above the residual spectrum, from 0 to Nyquist."""
         count = self.signal.size
         cycles = np.linspace(0, count / 2, power.size)
         beside = power[(cycles >= self.turns / 2) & (cycles <= 2 * self.turns)]
@@ -65,17 +63,17 @@ class Wave(NamedTuple):
 
 
 def turned(time: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    """Angle that a rig has turned through since the first sample.
+    """Return the angle that a rig has turned since the first sample.
 
     Parameters
     ----------
     time, speed
-        Moments [s] and rotation speed [rad/s] (time).
+        Times [s] and rotation speed [rad/s] (time).
 
     Returns
     -------
     numpy.ndarray
-        Angle [rad] (time); not a number everywhere where a speed is missing.
+        Angle [rad] (time); all NaN if a speed is missing.
 
     Examples
     --------
@@ -88,12 +86,12 @@ def turned(time: np.ndarray, speed: np.ndarray) -> np.ndarray:
 
 
 def hidden_by_part(turns: float) -> float:
-    """Return the standard error that part of a turn hides, over the scatter that it shows.
+    """Return the standard error that a part of a turn hides, relative to its own scatter.
 
     Notes
     -----
-    Worst about a crest: the mean is off by sinc(k), which 1.96 errors shall hold; the scatter is
-    ``(1 + sinc(2 k))/2 - sinc(k)**2``, squared, with ``sinc(x) = sin(pi x)/(pi x)``.
+    Worst case around a crest: the mean deviates by sinc(k), which equals 1.96 errors; the variance
+    is ``(1 + sinc(2 k))/2 - sinc(k)**2`` with ``sinc(x) = sin(pi x)/(pi x)``.
     """
     k = max(turns, _MIN_TURNS)
     scatter = np.sqrt((1 + np.sinc(2 * k)) / 2 - np.sinc(k) ** 2)
@@ -101,12 +99,12 @@ def hidden_by_part(turns: float) -> float:
 
 
 def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
-    """Fit waves of once (and twice) per turn to a record, its mean beside them.
+    """Fit a mean and waves of once (and twice) per turn to a record, and return the waves.
 
     Parameters
     ----------
     blocks, angle
-        Means of the signal and of the angle [rad] over equal stretches of time (stretch).
+        Means of the signal and of the angle [rad] over equal time intervals (stretch).
     """
     turns = turns_of(angle)
     orders = (1, 2) if turns >= _TURNS_OF_SECOND_ORDER else (1,)
@@ -122,12 +120,13 @@ def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
 
 
 def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
-    """Return how many stretches show the course of many turns, a multiple of the coarse ones.
+    """Return the number of intervals that resolves many turns, a multiple of the coarse ones.
 
     Parameters
     ----------
     turns, coarse, samples
-        Of a record. 0 where the coarse ones show it, too, or the samples do not.
+        Numbers of turns, coarse intervals and samples of a record. The result is 0 if the coarse
+        intervals resolve the turns, or the samples do not.
 
     Examples
     --------
@@ -143,14 +142,14 @@ def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
 
 
 def in_step(blocks: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return the angle [rad], stretched by up to `MAX_ERROR_OF_SPEED` to where its wave is largest.
+    """Return the angle [rad], stretched by up to `MAX_ERROR_OF_SPEED` to maximise its wave.
 
     Parameters
     ----------
     blocks, angle
-        Means of the signal and of the angle over equal stretches of time (stretch).
+        Means of the signal and of the angle over equal time intervals (stretch).
     """
-    # by a quarter of a turn each
+    # steps of a quarter turn each
     steps = math.ceil(4 * limits.MAX_ERROR_OF_SPEED.value * turns_of(angle))
     stretched = 1 + np.linspace(
         -limits.MAX_ERROR_OF_SPEED.value, limits.MAX_ERROR_OF_SPEED.value, 2 * steps + 1
@@ -161,7 +160,7 @@ def in_step(blocks: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def turns_of(angle: np.ndarray) -> float:
-    """Return the turns of a record, from the angle [rad] of its stretches; NaN if unknown."""
+    """Return the turns of a record, from the angle [rad] of its intervals; NaN if unknown."""
     if angle.size < 2:
         return np.nan
     return float(abs(angle[-1] - angle[0]) / (2 * np.pi) * angle.size / (angle.size - 1))

@@ -2,17 +2,18 @@
 
 Notes
 -----
-A record is described by its means over up to 384 equal stretches of time. Oscillations and a slow
-course are fitted first, and the lowest cosines of the rest tell how far its mean may be off
-(:mod:`tribolab.friction.mean_error`). Three values are kept apart: the mean over the path (what was
-measured), the level (without the unfinished period of an oscillation), and the steady value, which
-belongs to a running-in and is not estimated here.
+A record is described by its means over up to 384 equal time intervals. Oscillations and slow trends
+are fitted first, and the lowest cosines of the residuals determine the error of its mean
+(:mod:`tribolab.friction.mean_error`). Three values are distinguished: the mean over the path (as
+measured), the level (without the incomplete period of an oscillation), and the steady value after
+running-in, which is not estimated here.
 
 Coverage of the 95 % interval over 500 records of 1920 samples each is 93 to 100 %, the median
-standard error 0.8 to 1.5 times the true scatter, for white noise, noise with a memory of 1/200 to
-1/5 of the record, sines, sawtooths, drifts and running-in (``tests/benchmarks/mean_coverage.py``).
-What repeats with each turn of a rig whose rotation is recorded is known to cancel over whole turns
-(:mod:`tribolab.friction.run_out`; ``tests/benchmarks/bench_run_out.py`` prints coverage).
+standard error 0.8 to 1.5 times the true scatter, for white noise, noise with a correlation time of
+1/200 to 1/5 of the record, sines, sawtooths, drifts and running-in
+(``tests/benchmarks/mean_coverage.py``). Waves that repeat with each turn of a rig whose rotation is
+recorded cancel over whole turns (:mod:`tribolab.friction.run_out`;
+``tests/benchmarks/bench_run_out.py`` prints coverage).
 """
 
 from __future__ import annotations
@@ -38,11 +39,11 @@ from tribolab.friction.run_out import (
 from tribolab.friction.time_weights import on_grid, sample_weights
 
 MOST_STRETCHES = int(limits.BLOCKS.value)
-NORMAL = float(special.ndtri(0.975))  # standard errors in a 95 % interval, many degrees of freedom
-_MIN_STRETCHES_OF_TURN = 40  # stretches in which waves of a turning rig are looked for
-# frequencies of a spectrum beside which a wave of a turning rig stands out
+NORMAL = float(special.ndtri(0.975))  # U95 over the standard error for many degrees
+_MIN_STRETCHES_OF_TURN = 40  # fewest intervals for which waves of a turning rig are fitted
+# number of frequencies of the spectrum with which a wave of a turning rig is compared
 _SPECTRUM_FREQUENCIES = 1024
-# degrees of freedom over the width of their 95 % interval
+# grid of degrees of freedom to invert u95/sem
 _DOF = np.geomspace(1.0, 1e4, 8000)
 _WIDTHS = special.stdtrit(_DOF, 0.975)
 
@@ -50,8 +51,9 @@ _WIDTHS = special.stdtrit(_DOF, 0.975)
 class Estimate(NamedTuple):
     """Mean and trend of a record, with errors.
 
-    ``t_0.975(dof) sem`` is ``u95``, of the mean over the path; those that end in ``_beyond`` are of
-    a mean that is to hold beyond it, where a course along the path is a wander that may go on.
+    ``t_0.975(dof) sem`` is ``u95``, of the mean over the path; values ending in ``_beyond`` are of
+    the mean as an estimate beyond the path, where a trend along the path is slow drift that may
+    continue.
     """
 
     mean: float
@@ -94,18 +96,18 @@ class StandardError(NamedTuple):
 
 
 def with_freedom(sem: np.ndarray, u95: np.ndarray) -> StandardError:
-    """Return the standard error and the degrees of freedom that make an expanded uncertainty.
+    """Return the standard error and degrees of freedom that give an expanded uncertainty.
 
     Parameters
     ----------
     sem, u95
-        Of one shape and unit.
+        Arrays of equal shape and unit.
 
     Returns
     -------
     StandardError
-        ``t_0.975(dof) sem = u95``. The standard error is changed where no degrees of freedom fit:
-        to ``u95/1.96`` (dof infinite) or ``u95/12.7`` (dof 1).
+        ``t_0.975(dof) sem = u95``. The standard error is changed if no degrees of freedom fit: to
+        ``u95/1.96`` (dof infinite) or ``u95/12.7`` (dof 1).
 
     Examples
     --------
@@ -122,25 +124,24 @@ def with_freedom(sem: np.ndarray, u95: np.ndarray) -> StandardError:
 
 
 def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
-    """Mean with its standard error, memory and trend of one record.
+    """Return the mean of one record with its standard error, correlation time and trend.
 
     Parameters
     ----------
     time
         Increasing sample times [s]; the spacing may change.
     values
-        The samples, in any unit. Values that are not numbers are left out.
+        The samples, in any unit. Values that are not finite are omitted.
 
     Returns
     -------
     Estimate
-        ``std`` is the sample standard deviation (ddof 1). If the sampling rate changes,
-        mean and std are weighted by time.
-        ``effective_samples`` n_eff is std^2 over the variance of the mean beyond the path, at most
-        the number of samples: a course along the path leaves few; ``autocorrelation_time`` is
-        duration / (2 n_eff), half a spacing for white noise.
-        ``determined`` says whether U95 is at most half the range of the samples.
-        ``trend_p_value`` tests the least-squares slope against the signal's own memory.
+        ``std`` is the sample standard deviation (ddof 1). If the sampling rate changes, mean and
+        std are weighted by time. ``effective_samples`` n_eff is std^2 over the variance of the mean
+        beyond the path, at most the number of samples: few with a trend along the path;
+        ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
+        ``determined`` says whether U95 is at most half the range of the samples. ``trend_p_value``
+        tests the least-squares slope against the correlated residuals.
 
     Examples
     --------
@@ -153,16 +154,16 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
 
 
 def estimates_of(records: Iterable[tuple[np.ndarray, ...]]) -> list[Estimate]:
-    """Give what `estimate_of` does for several records at once, in a fraction of the time.
+    """Return the results of `estimate_of` for several records at once, in a fraction of the time.
 
     Parameters
     ----------
     records
-        Sample times [s] and samples of each, looked at one after the other; of a rig that turns
-        the angle [rad] of each sample, too: what repeats with each turn is then no slow wander,
-        and ``turns`` says how many were seen (:mod:`tribolab.friction.run_out`).
+        Sample times [s] and samples of each, processed in sequence; for a rotating rig also the
+        angle [rad] of each sample: waves that repeat with each turn then do not count as drift, and
+        ``turns`` is the number of recorded turns (:mod:`tribolab.friction.run_out`).
     """
-    described = [_described(*record) for record in records]
+    described = [_describe(*record) for record in records]
     out = [_NOTHING if isinstance(each, _Record) else each for each in described]
     alike: dict[int, list[int]] = {}
     for place, each in enumerate(described):
@@ -170,13 +171,13 @@ def estimates_of(records: Iterable[tuple[np.ndarray, ...]]) -> list[Estimate]:
             alike.setdefault(each.blocks.size, []).append(place)
     for places in alike.values():
         own = [each for place in places if isinstance(each := described[place], _Record)]
-        for place, estimate in zip(places, _with_errors(own), strict=True):
+        for place, estimate in zip(places, _estimate_errors(own), strict=True):
             out[place] = estimate
     return out
 
 
 class _Record(NamedTuple):
-    """A record by its means over equal stretches, before its errors are known."""
+    """A record as means over equal intervals, before its errors are known."""
 
     mean: float
     std: float
@@ -184,14 +185,14 @@ class _Record(NamedTuple):
     samples: int
     duration: float
     blocks: np.ndarray
-    angle: np.ndarray  # of the rig's rotation over the same stretches [rad]; empty if unknown
+    angle: np.ndarray  # of the rig's rotation over the same intervals [rad]; empty if unknown
     left: float = 0.0  # standard error that many turns leave in the mean
 
 
-def _described(
+def _describe(
     time: np.ndarray, values: np.ndarray, angle: np.ndarray | None = None
 ) -> _Record | Estimate:
-    """Describe a record; the whole answer where it has no scatter or hardly a sample."""
+    """Return a record as means over intervals, or the estimate without scatter or samples."""
     good = np.isfinite(values)
     if not good.all():
         time, values = time[good], values[good]
@@ -241,12 +242,12 @@ def _without_many_turns(record: _Record, fine: np.ndarray, angle: np.ndarray) ->
     )
 
 
-def _with_errors(records: list[_Record]) -> list[Estimate]:
-    """Give the estimates of records with as many stretches each."""
+def _estimate_errors(records: list[_Record]) -> list[Estimate]:
+    """Return the estimates of records with equal numbers of intervals."""
     blocks, left = _without_turns(records)
     levels = levels_of(blocks)
     line = line_through(without_lines(blocks, levels.lines))
-    # an unfinished period of an oscillation moves the mean over the path, but not the level
+    # an incomplete period of an oscillation changes the mean over the path, but not the level
     moved = np.abs(levels.level - blocks.mean(axis=1))
     path, beyond = (
         with_freedom(np.sqrt(sem**2 + moved**2 + left**2), np.hypot(u95 + moved, NORMAL * left))

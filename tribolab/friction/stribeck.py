@@ -43,7 +43,7 @@ def measured_stribeck_curve(
     over: str = "sliding_speed",
     **labels: Sequence[Label],
 ) -> xr.Dataset:
-    """Combine the segments of runs into friction coefficient against sliding speed.
+    """Return friction coefficient against sliding speed from the segments of runs.
 
     Parameters
     ----------
@@ -51,14 +51,14 @@ def measured_stribeck_curve(
         Results of `friction_coefficient`, one for each run of the same system, or of several
         systems with `labels`. Segments that a person rejected (`decide`) are left out.
     speed_tolerance
-        Largest relative difference of the speeds of one point. The two strokes of a pair stay
-        together at their mean speed; a run whose speed only rises or only falls repeats none.
+        Largest relative difference of the speeds of one point. The two strokes of a pair are
+        combined at their mean speed; a run whose speed only rises or only falls repeats no speed.
     over
         The abscissa: ``"sliding_speed"``, or another speed of the segments, such as
-        ``"rolling_speed"``, the entrainment speed of a machine whose two bodies turn. It is the
-        dim of the result then.
+        ``"rolling_speed"``, the entrainment speed of a machine whose two bodies turn. It becomes
+        the dim of the result.
     **labels
-        What tells the runs apart, one label for each run, e.g. ``surface=["Sb-R", "Smooth"]``.
+        Labels that distinguish the runs, one for each run, e.g. ``surface=["Sb-R", "Smooth"]``.
         Runs with the same labels make one curve.
 
     Returns
@@ -72,8 +72,8 @@ def measured_stribeck_curve(
         the standard deviation of the runs' means (NaN for one run); ``runs`` and ``segments``.
         Attributes: the provenance, with the files of all runs as its source; ``speeds_grouped``
         ("stated", "clear", "fair" or "unclear"): how clearly the points differ in speed;
-        ``repeats_are``: what the scatter between runs is a scatter of. With `labels` all that is
-        over these dims, too (`joined_curves`).
+        ``repeats_are``: the kind of repeats. With `labels` all variables are also over these dims
+        (`joined_curves`).
 
     Raises
     ------
@@ -84,12 +84,12 @@ def measured_stribeck_curve(
     -----
     Two strokes whose common offset was removed by the half loop are one observation. Observations
     at one speed make the run's mean, and the runs' means make the point, each by the rule of
-    `tribolab.friction.points.mean_of_repeats`: how strokes scatter is learnt from all speeds of the
-    run, how runs scatter from all speeds of the curve, with the degrees of freedom that an offset
-    between runs leaves. One observation alone has its own error, in which a course along the stroke
-    counts as a wander. With one run the scatter between runs is unknown, and the error is the
-    run's own. Speeds are grouped without chaining (`tribolab.friction.points.speed_groups`); set
-    speeds, where all are known, decide.
+    `tribolab.friction.points.mean_of_repeats`: the scatter of strokes is estimated from all speeds
+    of the run, that of runs from all speeds of the curve, with degrees of freedom reduced by an
+    offset between runs. A single observation has its own error, in which a trend along the stroke
+    counts as drift. With one run the scatter between runs is unknown, and the error is the run's
+    own. Speeds are grouped without chaining (`tribolab.friction.points.speed_groups`), by set
+    speeds if all are known.
 
     Examples
     --------
@@ -207,7 +207,7 @@ def _as_sliding(friction: xr.Dataset, over: str) -> xr.Dataset:
 def _of_several(
     frictions: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
 ) -> xr.Dataset:
-    """Return the curve of each combination of labels, side by side."""
+    """Return the curves of all combinations of labels, joined."""
     groups = grouped(frictions, labels, "measured_stribeck_curve")
     curves = joined_curves(
         [(measured_stribeck_curve(group, speed_tolerance), key) for group, key in groups]

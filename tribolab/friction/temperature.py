@@ -1,4 +1,4 @@
-"""Temperature that a run recorded while it slid."""
+"""Temperature recorded during the sliding of a run."""
 
 from __future__ import annotations
 

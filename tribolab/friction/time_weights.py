@@ -2,9 +2,9 @@
 
 Notes
 -----
-Each row stands for half of the interval before it and half of that after it (trapezoidal rule).
-A gap counts as one usual interval: nobody knows what the signal did there. A slower rate is no gap:
-it has at least three such intervals in a row.
+Each row has the weight of half the interval before it and half the interval after it (trapezoidal
+rule). A gap counts as one usual interval, because the signal is unknown there. A slower rate is not
+a gap: it has at least three such intervals in a row.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from scipy import ndimage
 
 from tribolab.friction.limits import MAX_UNEVEN, MIN_GAP
 
-_COMPARED_ROWS = 1024  # rows at which time is compared with even rows, before all of them are
+_COMPARED_ROWS = 1024  # rows of a first check for even sampling, before all rows are compared
 _INTERVALS_AROUND = 5  # intervals whose median is the usual one
 
 
 def sample_weights(time: np.ndarray) -> np.ndarray | None:
-    """Weights by time, summing to one; None for even sampling.
+    """Return weights by time, summing to one; None for even sampling.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def sample_weights(time: np.ndarray) -> np.ndarray | None:
 
 
 def without_gaps(steps: np.ndarray) -> np.ndarray:
-    """Return the intervals between rows, a gap as one usual interval of the rows around it.
+    """Return the intervals between rows, with gaps replaced by the usual interval around them.
 
     Parameters
     ----------
@@ -64,25 +64,25 @@ def without_gaps(steps: np.ndarray) -> np.ndarray:
 
 
 def _is_uneven(time: np.ndarray) -> bool:
-    """Whether rows run ahead of even rows, or behind, by more than a share of the duration."""
+    """Return whether rows deviate from even rows by more than a share of the duration."""
     lasted = float(time[-1] - time[0])
     if not lasted > 0:
         return False
     even = np.linspace(0.0, 1.0, time.size)
     ahead = float(np.abs((time - time[0]) / lasted - even).max())
-    # a few rows are never even to better than one of them
+    # the limit includes one row: a few rows are never more even
     return ahead > MAX_UNEVEN.value + 1 / time.size
 
 
 def on_grid(time: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
-    """Means over `count` equal stretches of time; an empty one is interpolated.
+    """Return means over `count` equal time intervals; empty ones are interpolated.
 
     Parameters
     ----------
     time, values
         Increasing sample times [s], and the signal (time).
     count
-        Stretches.
+        Number of intervals.
     """
     weight = sample_weights(time)
     if weight is None:

@@ -1,4 +1,4 @@
-"""Machines whose two bodies turn: the slide-roll ratio of a Stribeck curve, and traction curves."""
+"""Machines with two rotating bodies: slide-roll ratio of a Stribeck curve, traction curves."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def stribeck_part(
     frictions
         Results of `tribolab.friction_coefficient` of one system.
     tolerance
-        Largest relative difference of what is one slide-roll ratio or one speed.
+        Largest relative difference of equal slide-roll ratios or speeds.
 
     Returns
     -------
     tuple
-        Of several ratios, that with the most entrainment speeds; runs without a segment at it are
-        left out. Where no ratio is recorded, or nothing slides, the runs as they are and None.
+        The segments at the ratio with the most entrainment speeds; runs without such a segment are
+        omitted. If no ratio is recorded, or nothing slides, the unchanged runs and None.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def stribeck_part(
 def traction_curves(
     frictions: Sequence[xr.Dataset], tolerance: float = SPEED_TOLERANCE.value
 ) -> xr.Dataset:
-    """Friction over the slide-roll ratio at each entrainment speed that has three or more of them.
+    """Return friction over slide-roll ratio at each entrainment speed with three or more ratios.
 
     Parameters
     ----------
@@ -76,13 +76,13 @@ def traction_curves(
         Results of `tribolab.friction_coefficient` of one system, with ``rolling_speed`` and
         ``slide_roll_ratio`` of each segment.
     tolerance
-        Largest relative difference of what is one slide-roll ratio or one speed.
+        Largest relative difference of equal slide-roll ratios or speeds.
 
     Returns
     -------
     xarray.Dataset
         Over ``point``: ``rolling_speed`` [m/s], ``slide_roll_ratio`` [1], and friction with its
-        errors as `measured_stribeck_curve` has them. No points where nothing was measured so.
+        errors as in `measured_stribeck_curve`. No points without such measurements.
 
     Raises
     ------

@@ -35,9 +35,9 @@ from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
 from tribolab.units.stamping import stamp
 
-_SIGN_SAMPLES = 100_000  # samples of a segment that tell its sign
+_SIGN_SAMPLES = 100_000  # samples of a segment that determine its sign
 
-# of a run that has only forces, these are in N and have "force_" before their name
+# for a run with forces only, these are in N and prefixed with "force_"
 _IN_SIGNAL_UNIT = (
     "drop",
     "drop_std",
@@ -87,7 +87,7 @@ def stick_slip(
     noise_levels: float = 4.0,
     fewest_samples: int = 16,
 ) -> xr.Dataset:
-    """Stick-slip of each segment: spectrum in time and distance, events, and class of waveform.
+    """Return stick-slip of each segment: spectra, events, and class of waveform.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def stick_slip(
         The run, with ``friction_force`` and ``normal_force``, or ``friction_coefficient``, or
         ``friction_force`` alone.
     segments
-        From `find_segments` on the same run; the trimmed part of each is looked at.
+        From `find_segments` on the same run; the trimmed part of each is analysed.
     hysteresis
         Smallest swing of an event, relative to the swing of the segment's oscillation.
     noise_levels
@@ -106,31 +106,30 @@ def stick_slip(
     Returns
     -------
     xarray.Dataset
-        On dim ``segment``, beside ``sliding_speed``, ``direction`` and ``sliding_distance``:
-        ``waveform`` (text: one of ``waveform.CLASSES``, "not decided" or "not evaluated") and
-        ``class_probability`` (segment, waveform_class); ``regularity`` (text: "regular",
-        "irregular" or "intermittent") and ``oscillating_time_share``; ``periods`` in the segment;
-        ``dominant_frequency`` [Hz] and ``dominant_wavelength`` [m] of the spectrum (with ``_sem``;
-        of the drops where these are alike and agree), ``false_alarm_probability``,
+        On dim ``segment``, in addition to ``sliding_speed``, ``direction`` and
+        ``sliding_distance``: ``waveform`` (text: one of ``waveform.CLASSES``, "not decided" or "not
+        evaluated") and ``class_probability`` (segment, waveform_class); ``regularity`` (text:
+        "regular", "irregular" or "intermittent") and ``oscillating_time_share``; ``periods`` in the
+        segment; ``dominant_frequency`` [Hz] and ``dominant_wavelength`` [m] of the spectrum (with
+        ``_sem``; of the drops if these are regular and agree), ``false_alarm_probability``,
         ``peak_prominence``, ``oscillation_swing``, ``oscillation_share``, ``background_noise``,
         ``sample_noise``, ``harmonic_content``; ``events`` (their number), mean and scatter of
         ``drop``, ``stick_duration``, ``slip_duration``, ``recurrence_time`` [s],
         ``recurrence_distance`` [m], ``loading_slope`` [1/m], ``loading_stiffness`` [N/m],
         ``critical_stiffness_low`` and ``_high`` [N/m] (bounds, of regular sawtooth stick-slip, with
         the attribute ``stiffness_N_m`` of the run if there is one; see
-        `tribolab.friction.oscillation.critical_stiffness`);
-        ``fall_share``, ``asymmetry_p_value``, ``derivative_skewness``, ``period_scatter``,
-        ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``rig_swing``
-        (of what repeats with each turn), ``spike_share``;
-        ``instrument`` (text: mains, run-out and resonances), ``method``, ``remark`` (text).
-        Where the class is smooth sliding or not decided, only what describes the noise is a number;
-        its ``oscillation_swing`` bounds what could be hidden.
-        On (segment, line), the strongest first: ``line_frequency`` [Hz], ``line_wavelength`` [m],
+        `tribolab.friction.oscillation.critical_stiffness`); ``fall_share``, ``asymmetry_p_value``,
+        ``derivative_skewness``, ``period_scatter``, ``drop_scatter``; ``mains_frequency``,
+        ``mains_amplitude``, ``rig_swing`` (of waves that repeat with each turn), ``spike_share``;
+        ``instrument`` (text: mains, run-out and resonances), ``method``, ``remark`` (text). If the
+        class is smooth sliding or not decided, only the columns that describe the noise are
+        numbers; ``oscillation_swing`` is then the upper limit of an undetected oscillation. On
+        (segment, line), the strongest first: ``line_frequency`` [Hz], ``line_wavelength`` [m],
         ``line_swing``, ``line_false_alarm_probability`` of all oscillations that are significant.
         On (segment, frequency): ``psd``, ``psd_background``, ``psd_significant`` [1/Hz]; on
         (segment, inverse_wavelength): ``distance_psd`` [m]. On dim ``event``: ``event_segment``,
-        ``event_time`` [s], ``event_drop``, ``event_stick``, ``event_slip`` [s].
-        Of a run with forces only, what carries the signal's unit is called ``force_...``.
+        ``event_time`` [s], ``event_drop``, ``event_stick``, ``event_slip`` [s]. For a run with
+        forces only, variables in the signal's unit are named ``force_...``.
 
     Raises
     ------
@@ -139,23 +138,21 @@ def stick_slip(
 
     Notes
     -----
-    Beside this module in `tribolab.friction.oscillation`: the spectrum, its background and
-    significance (`oscillation`), `events`, the class and its limits (`waveform`). Distance is
-    speed times time, S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. Periods
-    are counted from the middle of one sharp fall to that of the next (of a reversed sawtooth, of
-    its rises), pauses left out. Of ten cycles at an amplitude three times the noise, a mean drop is
-    known to some 5 % (``tests/benchmarks/stick_slip_table.py``).
-    Irregular stick-slip has no period: its dominant wavelength is that of the mean frequency of its
-    spectrum (`oscillation.mean_frequency`), or of its line where there is a sharp one; the mean
-    distance between drops is another number, ``recurrence_distance``.
-    Spectrum and drops have to agree on the period within 15 % or three errors (where periods
-    scatter, within a factor of 1.8), and the segment has to hold four periods: else the class is
-    "not decided", and the remark says why. An oscillation with fewer than four periods is not told
-    from a slow wander.
-    Lines of the mains, and what repeats with each turn of the rig where its rotation is known
-    (`tribolab.friction.oscillation.rig_waves`), are taken out before anything else is sought and
-    named in ``instrument``; an oscillation that keeps its
-    frequency within 3 % over speeds that differ by a factor of two or more is named as a resonance.
+    Other modules of `tribolab.friction.oscillation`: the spectrum, its background and significance
+    (`oscillation`), `events`, the class and its limits (`waveform`). Distance is speed times time,
+    S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. Periods are counted from
+    the middle of one sharp fall to that of the next (of a reversed sawtooth, of its rises), pauses
+    left out. The mean drop of ten cycles at an amplitude three times the noise is known to some 5 %
+    (``tests/benchmarks/stick_slip_table.py``). Irregular stick-slip has no period: its dominant
+    wavelength is that of the mean frequency of its spectrum (`oscillation.mean_frequency`), or of
+    its sharp line, if any; the mean distance between drops is ``recurrence_distance``. Spectrum and
+    drops must agree on the period within 15 % or three errors (if periods scatter, within a factor
+    of 1.8), and the segment must contain four periods: else the class is "not decided", and the
+    remark gives the reason. An oscillation with fewer than four periods is not distinguished from
+    slow drift. Lines of the mains, and waves that repeat with each turn of a rig whose rotation is
+    known (`tribolab.friction.oscillation.rig_waves`), are removed first and listed in
+    ``instrument``; an oscillation that keeps its frequency within 3 % over speeds that differ by a
+    factor of two or more is listed as a resonance.
 
     Examples
     --------
@@ -180,15 +177,15 @@ def stick_slip(
     motion = motion_of(run)
     examined, loads, remarks, waves = [], [], [], []
     for signal, v in zip(_signals(run, segments), speed, strict=True):
-        values, wave = _beside_rig(signal, motion)
+        values, wave = _without_rig_wave(signal, motion)
         seen = examine_record(signal.time, values, thresholds, force=force)
         examined.append(seen)
         loads.append(signal.load)
         waves.append(wave)
-        remarks.append(_remark(seen, _cut_off(signal.raw), v))
+        remarks.append(_remark(seen, _is_clipped(signal.raw), v))
     data = slip_columns(examined, speed, np.array(loads))
     saw = (data["waveform"] == CLASSES[1]) & (data["regularity"] == SLIP_KINDS[0])
-    rig = np.full(saw.size, run.attrs.get(STIFFNESS, np.nan))  # stated, else the steepest rise
+    rig = np.full(saw.size, run.attrs.get(STIFFNESS, np.nan))  # else the steepest rise
     bounds = critical_stiffness(
         data["drop"], data["recurrence_distance"],
         np.where(np.isnan(rig), data["loading_stiffness"], rig),
@@ -201,7 +198,7 @@ def stick_slip(
     data |= {name: segments[name].values for name in _OF_SEGMENTS if name in segments}
     classes = {"class_probability": (("segment", "waveform_class"), class_table(examined))}
     tables = spectra_table(examined, speed), event_list(examined), line_table(examined, speed)
-    # as variables, at once: each merging would compare the coordinates anew
+    # assigned as variables at once: each merge would compare the coordinates again
     further = {name: table.variables[name] for table in tables for name in table.data_vars}
     coords: dict[object, object] = {"segment": segments["segment"].values}
     coords |= {name: table.variables[name] for table in tables for name in table.coords}
@@ -215,13 +212,13 @@ def stick_slip(
 
 
 def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
-    """Friction of each segment, one at a time to save memory."""
+    """Yield the friction of each segment, one at a time to save memory."""
     time, parts = run["time"].values, trimmed_slices(run, segments)
     direction = segments["direction"].values.astype(float)
     signal = friction_signal(run)
     if signal == "friction_force":
         force = run["friction_force"].values
-        # a sensor whose sign is turned would turn sticks into slips
+        # a sensor of reversed sign would exchange sticks and slips
         means = [
             d * np.nanmean(force[s][:_SIGN_SAMPLES])
             for s, d in zip(parts, direction, strict=True)
@@ -255,7 +252,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
                 yield SegmentSignal(part, time[part], nothing, raw, load)
     elif signal == "friction_coefficient":
         ratio = run["friction_coefficient"].values
-        # a coefficient that never changes sign carries no direction
+        # a coefficient that never changes sign contains no direction
         begins = [ratio[s][:_SIGN_SAMPLES] for s in parts]
         signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
         for part, sign in one_by_one(zip(parts, direction, strict=True)):
@@ -274,8 +271,8 @@ def _signed(values: np.ndarray, sign: float) -> np.ndarray:
     return -values if sign < 0 else values
 
 
-def _cut_off(values: np.ndarray) -> bool:
-    """Whether the signal stays at its largest or smallest value again and again."""
+def _is_clipped(values: np.ndarray) -> bool:
+    """Return whether the signal repeatedly stays at its largest or smallest value (clipping)."""
     if values.size < 32 or values.size > 1 << 21:
         return False
     for end in (np.nanmax(values), np.nanmin(values)) if np.isfinite(values).any() else ():
@@ -308,7 +305,7 @@ def _remark(seen: Examined | str, cut: bool, speed: float) -> str:
 
 
 def _form_words(examined: Examined, speed: float) -> list[str]:
-    """Say what is special of an oscillation that is claimed."""
+    """Return remarks on special features of a claimed oscillation."""
     if not oscillates(examined):
         return []
     words, seen = [], examined.regularity
@@ -331,10 +328,10 @@ def _form_words(examined: Examined, speed: float) -> list[str]:
     return words
 
 
-def _beside_rig(
+def _without_rig_wave(
     signal: SegmentSignal, motion: RigMotion | None
 ) -> tuple[np.ndarray, RigWave | None]:
-    """Remove waves that repeat with each turn or stroke of the rig from a segment."""
+    """Return a segment without waves that repeat with each turn or stroke of the rig, and these."""
     if motion is None:
         return signal.values, None
     good = np.isfinite(signal.values)
@@ -355,7 +352,7 @@ def _instrument(
     waves: list[RigWave | None],
     motion: RigMotion | None,
 ) -> list[str]:
-    """Name oscillations due to the instrument: mains, turns, and lines independent of speed."""
+    """Return texts on oscillations due to the instrument: mains, turns, speed-independent lines."""
     kind = np.array([class_of(e) for e in examined], dtype=object)
     own = np.array([np.nan if isinstance(e, str) else e.oscillation.frequency for e in examined])
     texts = []

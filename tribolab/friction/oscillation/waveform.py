@@ -1,8 +1,8 @@
 """Waveform of an oscillation: steepness of rise and fall, and similarity of periods.
 
-The class follows from eleven features by a multinomial logistic model. Its coefficients stand
-below; they were fitted to simulated traces (``tests/benchmarks/calibrate_stick_slip.py``, whose
-seeds no test and no table uses) and looked at on real records.
+The class follows from eleven features by a multinomial logistic model. Its coefficients were fitted
+to simulated traces (``tests/benchmarks/calibrate_stick_slip.py``, with seeds not used in tests or
+tables) and checked on real records.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ class WaveformFeatures(NamedTuple):
     Parameters
     ----------
     fall_share
-        Median part of a cycle in which friction falls: 0.5 for a sine, near 0 for a saw.
+        Median part of a cycle in which friction falls: 0.5 for a sine, near 0 for a sawtooth.
     asymmetry_p_value
-        Probability that rises and falls that last equally long differ so, by the sign test over
-        cycles: noise looks the same backwards in time.
+        p value of the sign test over cycles that rises and falls last equally long, as in noise,
+        which is symmetric in time.
     derivative_skewness
-        Skewness of the derivative: 0 for a sine, strongly negative for a saw.
+        Skewness of the derivative: 0 for a sine, strongly negative for a sawtooth.
     period_scatter, drop_scatter
         Standard deviation over mean of the recurrence times and of the drops.
     events
-        Whole cycles.
+        Number of whole cycles.
     """
 
     fall_share: float
@@ -48,7 +48,7 @@ class WaveformFeatures(NamedTuple):
 def describe_waveform(
     values: np.ndarray, lag: int, events: Events, period: np.ndarray
 ) -> WaveformFeatures:
-    """Features of the waveform of a record.
+    """Return the features of the waveform of a record.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def describe_waveform(
     lag
         Samples over which the derivative is taken.
     events
-        Cycles found in it.
+        Cycles found in the record.
     period
         Times from drop to drop, pauses left out [s].
     """
@@ -71,7 +71,7 @@ def describe_waveform(
         return WaveformFeatures(np.nan, 1.0, skewness, np.nan, np.nan, 0)
     longer, shorter = int((rise > fall).sum()), int((rise < fall).sum())
     p_value = 1.0
-    if longer + shorter:  # the exact sign test, from both sides
+    if longer + shorter:  # the exact two-sided sign test
         tail = float(special.bdtr(min(longer, shorter), longer + shorter, 0.5))
         p_value = min(1.0, 2 * tail)
     return WaveformFeatures(
@@ -93,18 +93,18 @@ CLASSES = (
 NOT_LOOKED_AT = "not evaluated"
 NOT_CLEAR = "not decided"
 
-# feature: (value where unknown, lowest, highest); what lies beyond counts as the limit
+# feature: (value if unknown, lowest, highest); values beyond are clipped
 WAVEFORM_LIMITS = {
     "prominence": (0.0, -0.5, 4.0),  # log10 of the peak's power over the background
     "significance": (0.0, 0.0, 8.0),  # -log10 of the false-alarm probability
     "strength": (-0.3, -0.5, 1.5),  # log10 of the swing over the noise
     "share": (0.0, 0.0, 1.0),
     "harmonics": (0.5, 0.0, 1.2),
-    "asymmetry": (0.0, -0.5, 0.5),  # one half less the part of a cycle that falls
-    "lean": (0.0, 0.0, 0.5),  # its size
-    "reversal": (0.0, 0.0, 6.0),  # -log10 of the probability that rises and falls are alike
+    "asymmetry": (0.0, -0.5, 0.5),  # 0.5 minus the share of the falling part
+    "lean": (0.0, 0.0, 0.5),  # absolute value of the asymmetry
+    "reversal": (0.0, 0.0, 6.0),  # -log10 of the p value that rises and falls last equally long
     "skewness": (0.0, -4.0, 4.0),
-    "sharpness": (0.0, 0.0, 4.0),  # its size
+    "sharpness": (0.0, 0.0, 4.0),  # absolute value of the skewness
     "scatter": (0.5, 0.0, 0.8),  # of the periods
 }
 
@@ -126,7 +126,7 @@ _COEFFICIENTS = {
 
 
 def features(form: WaveformFeatures, oscillation: Oscillation) -> dict[str, float]:
-    """Features of the class, each within its `WAVEFORM_LIMITS`."""
+    """Return the features of the class, each clipped to its `WAVEFORM_LIMITS`."""
     raw = {
         "prominence": np.log10(max(oscillation.prominence, 1e-9)),
         "significance": -np.log10(max(oscillation.false_alarm, 1e-99)),
@@ -147,7 +147,7 @@ def features(form: WaveformFeatures, oscillation: Oscillation) -> dict[str, floa
 
 
 def class_probabilities(values: dict[str, float]) -> np.ndarray:
-    """Probability of each of `CLASSES` from the features.
+    """Return the probability of each of `CLASSES` from the features.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def class_probabilities(values: dict[str, float]) -> np.ndarray:
 
 
 def oscillating(kind: np.ndarray) -> np.ndarray:
-    """Return where a class of waveform claims an oscillation.
+    """Return a mask of the classes of waveform that are an oscillation.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def oscillating(kind: np.ndarray) -> np.ndarray:
 
 
 def most_probable(probability: np.ndarray) -> str:
-    """Return the class, "not decided" where smooth sliding is neither likely nor improbable.
+    """Return the most probable class, or "not decided" if smooth sliding is possible but unlikely.
 
     Examples
     --------

@@ -2,12 +2,12 @@
 
 Notes
 -----
-The rule looks at the number k of repeats and the ratio R of their largest to their smallest error,
-never at the values, so that it cannot choose what suits them. For k = 2 or R up to 5: the plain
-mean with Student's t of k - 1 degrees of freedom. Else the scatter tau between repeats is
-integrated out: with the reference prior [1]_, or, if the scatter of repeats under other conditions
-is known with enough degrees of freedom, with a half-Cauchy-like prior of that scale. The latter
-serves any k, because two repeats alone say nearly nothing of their scatter.
+The rule depends on the number k of repeats and the ratio R of their largest to their smallest
+error, but not on the values, which would bias the choice. For k = 2 or R up to 5: the plain mean
+with Student's t of k - 1 degrees of freedom. Else the scatter tau between repeats is integrated
+out: with the reference prior [1]_, or, if the scatter of repeats under other conditions is known
+with enough degrees of freedom, with a half-Cauchy-like prior of that scale. The latter is used for
+any k, because two repeats alone hardly determine their scatter.
 
 References
 ----------
@@ -38,7 +38,7 @@ class Mean(NamedTuple):
 
 
 class Pooled(NamedTuple):
-    """Scatter of repeats under other conditions, relative to their mean, and its freedom."""
+    """Scatter of repeats under other conditions, relative to their mean, and degrees of freedom."""
 
     scatter: float
     dof: float
@@ -50,11 +50,12 @@ def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | Non
     Parameters
     ----------
     values
-        Of two repeats or more.
+        Values of two repeats or more.
     errors
-        Their own standard errors, in the unit of the values; an unknown one is as the others.
+        Their own standard errors, in the unit of the values; an unknown one is set to the others'
+        median.
     pooled
-        What is known of the scatter of repeats from other conditions, if anything.
+        Scatter of repeats under other conditions, if known.
 
     Examples
     --------
@@ -78,7 +79,7 @@ def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | Non
     if plain:
         sem = float(values.std(ddof=1) / np.sqrt(k))
         u95 = float(special.stdtrit(k - 1, 0.975)) * sem
-        # repeats that agree better than their own errors let them do so by chance
+        # repeats that agree better than their own errors do so by chance
         own_sem = float(np.sqrt((errors[fine] ** 2).sum()) / fine.sum()) if fine.any() else 0.0
         if NORMAL * own_sem > u95:
             return Mean(float(values.mean()), own_sem, NORMAL * own_sem)
@@ -88,7 +89,7 @@ def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | Non
 
 
 def _integrated(y: np.ndarray, s: np.ndarray, scale: float | None) -> Mean:
-    """Integrate the scatter between repeats out; `scale` is that of its prior."""
+    """Return the mean with the scatter between repeats integrated out; `scale` is of its prior."""
     size = float(np.sqrt(np.median(s**2) + y.var()))
     tau = _SCATTER_GRID * size
     w = 1 / (s**2 + tau[:, None] ** 2)
@@ -129,12 +130,12 @@ def _half_width(weight: np.ndarray, off: np.ndarray, width: np.ndarray, out: flo
 
 
 def pooled_scatter(groups: list[np.ndarray]) -> Pooled:
-    """Return the relative scatter of repeats under several conditions, and its freedom.
+    """Return the relative scatter of repeats pooled over conditions, and its degrees of freedom.
 
     Parameters
     ----------
     groups
-        Values of the repeats of each condition; of one alone nothing is known.
+        Values of the repeats of each condition; a single value does not contribute.
 
     Examples
     --------
@@ -155,7 +156,7 @@ def pooled_between_runs(table: np.ndarray) -> Pooled:
     Parameters
     ----------
     table
-        Logarithms of friction (run, speed), NaN where a run has no such speed.
+        Logarithms of friction (run, speed), NaN if a run lacks a speed.
 
     Notes
     -----
@@ -179,7 +180,7 @@ def pooled_between_runs(table: np.ndarray) -> Pooled:
     if runs < 2 or not speeds:
         return Pooled(0.0, 0.0)
     rows, columns = common.mean(axis=1), common.mean(axis=0)
-    of_runs = float(rows.var(ddof=1))  # offset, and a share 1/n of what differs from speed to speed
+    of_runs = float(rows.var(ddof=1))  # offset, and a share 1/n of the scatter from speed to speed
     if speeds == 1:
         return Pooled(float(np.sqrt(of_runs)), runs - 1.0)
     rest = common - rows[:, None] - columns + common.mean()

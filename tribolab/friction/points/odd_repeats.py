@@ -3,9 +3,9 @@
 Notes
 -----
 The repeatability is that of the other conditions, from the squared contrasts of their repeats
-without the largest fifth. How large the largest deviation of a campaign may be by chance is found
-by simulation with as many conditions and repeats, whose scatter differs between conditions. Of two
-repeats that contradict it cannot be said which is wrong.
+without the largest fifth. The largest deviation by chance is found by simulating campaigns with the
+same numbers of conditions and repeats, whose scatter differs between conditions. If only two
+repeats differ, the outlier cannot be identified.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ _SEED = 7
 class OddRepeat(NamedTuple):
     """Outlying repeats of one condition.
 
-    `repeat` is the odd one, -1 of two; `deviation` is relative to the others' mean, of two their
-    difference; `repeatability` is the relative standard deviation elsewhere; `odd` is False if it
-    is merely suspect.
+    `repeat` is the number of the outlier, -1 for two repeats; `deviation` is relative to the
+    others' mean, for two repeats their difference; `repeatability` is the relative standard
+    deviation elsewhere; `odd` is False if it is merely suspect.
     """
 
     condition: int
@@ -47,7 +47,7 @@ def _contrasts(k: int) -> np.ndarray:
 
 
 def _scores(groups: Sequence[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return z of each repeat (sample, repeat), of two repeats one, and the scatter elsewhere.
+    """Return z of each repeat (sample, repeat), one for two repeats, and the scatter elsewhere.
 
     `groups` are (sample, repeat).
     """
@@ -71,8 +71,8 @@ def _scores(groups: Sequence[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]
 
 
 @lru_cache(maxsize=64)
-def _by_chance(repeats: tuple[int, ...]) -> np.ndarray:
-    """Return the sorted largest scores of campaigns whose repeats are sound."""
+def _simulated_scores(repeats: tuple[int, ...]) -> np.ndarray:
+    """Return the sorted largest scores of simulated campaigns without outliers."""
     rng = np.random.default_rng(_SEED)
     groups = []
     for k in repeats:
@@ -89,9 +89,9 @@ def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
     Parameters
     ----------
     groups
-        Logarithms of what was repeated, of each condition (repeat): of runs the mean of
-        ln(friction) over the speeds that they share, of scans ln(Rq). One condition alone has
-        nothing to be compared with.
+        Logarithms of the repeated quantity for each condition (repeat): for runs the mean of
+        ln(friction) over their common speeds, for scans ln(Rq). At least two conditions are needed
+        for a comparison.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
         own = [groups[k] for k in left]
         scores, scatters = _scores([values[None] for values in own])
         worst = int(np.argmax([z.max() for z in scores]))
-        limit = _by_chance(tuple(values.size for values in own))
+        limit = _simulated_scores(tuple(values.size for values in own))
         z = float(scores[worst].max())
         if z <= np.quantile(limit, 1 - limits.SUSPECT_BY_CHANCE.value):
             break

@@ -34,7 +34,7 @@ def speed_groups(
         Largest relative difference within a group [1].
     apart
         Number of the sweep that each speed belongs to, -1 for none: speeds of one sweep are never
-        one (observation).
+        combined (observation).
 
     Returns
     -------
@@ -60,22 +60,22 @@ def speed_groups(
     order = np.argsort(speed, kind="stable")
     x = np.log(speed[order])
     most = float(np.log1p(tolerance))
-    labels, verdict = _by_jump(x, most)
+    labels, verdict = _group_by_jump(x, most)
     if apart is not None and (apart >= 0).any():
-        labels = _parted(labels, apart[order])
+        labels = _separate_sweeps(labels, apart[order])
     group = np.empty(speed.size, int)
     group[order] = labels
     return SpeedGroups(group, verdict)
 
 
-def _by_jump(x: np.ndarray, most: float) -> tuple[np.ndarray, Verdict]:
-    """Return the groups of sorted logarithms, and how clear they are."""
+def _group_by_jump(x: np.ndarray, most: float) -> tuple[np.ndarray, Verdict]:
+    """Return the groups of sorted logarithms, and how clearly they differ."""
     n, floor = x.size, limits.SPEED_FLOOR.value
     if n == 1:
         return np.zeros(1, int), "clear"
     gaps = np.maximum(np.diff(x), floor)
     steps = np.unique(gaps)
-    # a threshold at each gap that may lie within a group, and the jump to the next wider one
+    # a threshold at each gap that may be within a group, and the jump to the next wider one
     within = steps[steps <= most]
     wider = np.append(steps[1:], np.nan)[: within.size]
     jumps = np.where(np.isnan(wider), 1.2 * most / np.maximum(within, 1e-300), wider / within)
@@ -91,7 +91,7 @@ def _by_jump(x: np.ndarray, most: float) -> tuple[np.ndarray, Verdict]:
         if _is_sound(x, own, most):
             best, labels = jump, own
     if best < limits.FAIR_JUMP.value:
-        return _linked(x, most), "unclear"
+        return _link_speeds(x, most), "unclear"
     return labels, "clear" if best >= limits.CLEAR_JUMP.value else "fair"
 
 
@@ -107,8 +107,8 @@ def _is_sound(x: np.ndarray, labels: np.ndarray, most: float) -> bool:
     return not gap.size or bool(narrow.mean() <= limits.NARROW_GAPS.value)
 
 
-def _linked(x: np.ndarray, most: float) -> np.ndarray:
-    """Group by complete linkage; speeds closer than the floor are one to begin with."""
+def _link_speeds(x: np.ndarray, most: float) -> np.ndarray:
+    """Return groups by complete linkage; speeds closer than the floor are combined first."""
     cells, which = np.unique(np.floor(x / limits.SPEED_FLOOR.value), return_inverse=True)
     middle = np.bincount(which, x) / np.bincount(which)
     if cells.size < 2:
@@ -118,8 +118,8 @@ def _linked(x: np.ndarray, most: float) -> np.ndarray:
     return np.concatenate([[0], np.cumsum(np.diff(found) != 0)])
 
 
-def _parted(labels: np.ndarray, sweep: np.ndarray) -> np.ndarray:
-    """Begin a new group wherever a sweep would have two of its speeds in one."""
+def _separate_sweeps(labels: np.ndarray, sweep: np.ndarray) -> np.ndarray:
+    """Return labels with a new group wherever two speeds of a sweep would share one."""
     result, seen, number = np.empty(labels.size, int), set[int](), -1
     last = -1
     for place, (label, own) in enumerate(zip(labels.tolist(), sweep.tolist(), strict=True)):
@@ -132,12 +132,12 @@ def _parted(labels: np.ndarray, sweep: np.ndarray) -> np.ndarray:
 
 
 def sweeps_of(run: np.ndarray, order: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    """Return which run each observation belongs to if that run's speed only rises or only falls.
+    """Return the run of each observation if that run's speed only rises or only falls.
 
     Parameters
     ----------
     run, order
-        Number of the run, and place in it (observation).
+        Number of the run, and position in it (observation).
     speed
         [m/s] (observation).
 

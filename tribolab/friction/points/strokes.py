@@ -19,9 +19,9 @@ from tribolab.friction.zero.of_run import PAIRED
 class Observations(NamedTuple):
     """Independent observations, one entry each: pairs of strokes, and strokes without a partner.
 
-    `sem` and `u95` are of a mean that is to hold beyond the stroke; `shared` is the part of `sem`
-    that all strokes of the run have in common; `order` is the place in the run; `variance` is the
-    mean square of the scatter within the strokes.
+    `sem` and `u95` are of the mean as an estimate beyond the stroke; `shared` is the part of `sem`
+    that all strokes of the run have in common; `order` is the position in the run; `variance` is
+    the mean square of the scatter within the strokes.
     """
 
     run: np.ndarray
@@ -36,7 +36,7 @@ class Observations(NamedTuple):
     strokes: np.ndarray
 
     def of(self, members: np.ndarray) -> Observations:
-        """Return some of them."""
+        """Return the selected observations."""
         return Observations(*(column[members] for column in self))
 
 
@@ -46,7 +46,7 @@ def observations_of(frictions: Sequence[xr.Dataset]) -> Observations:
     Parameters
     ----------
     frictions
-        Results of `tribolab.friction_coefficient`, without what a person rejected.
+        Results of `tribolab.friction_coefficient`, without rejected segments.
     """
     parts = [_of_run(friction, number) for number, friction in enumerate(frictions)]
     if not parts:
@@ -90,18 +90,18 @@ def grouped_strokes(
     pairs: np.ndarray,
     known: np.ndarray,
 ) -> Observations:
-    """Combine the two strokes of a pair, which share one error (stroke).
+    """Return observations with the two strokes of a pair, which share one error, combined (stroke).
 
     Parameters
     ----------
     run
-        Its number.
+        Number of the run.
     speed, set_speed, value, sem, u95, shared, variance
-        Of each stroke; in the unit of the value, speeds in m/s.
+        Columns of the strokes; in the unit of the value, speeds in m/s.
     pairs
-        The same number for the strokes of a pair, below 0 for one without a partner.
+        The same number for the strokes of a pair, below 0 for a stroke without a partner.
     known
-        Which strokes count.
+        Mask of the strokes used.
     """
     alone = -1.0 - np.arange(value.size)
     place = np.flatnonzero(known)
@@ -140,7 +140,7 @@ def grouped_by_speed(seen: Observations, tolerance: float) -> Grouping:
     Parameters
     ----------
     seen
-        Of one run or of several.
+        Observations of one or several runs.
     tolerance
         As for `tribolab.friction.points.speed_groups.speed_groups`.
     """
@@ -165,15 +165,15 @@ def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean
     Parameters
     ----------
     seen
-        Of the run.
+        Observations of the run.
     members
-        Which observations belong to each speed, in their order along the run.
+        Indices of the observations at each speed, in their order along the run.
 
     Notes
     -----
-    The scatter of a few strokes is known better from the strokes at all other speeds. Of many
-    strokes at one speed those that follow each other need not be independent: their mean has the
-    error of a series. An error that all strokes share does not become smaller in their mean.
+    The scatter of a few strokes is known better from the strokes at all other speeds. Many
+    successive strokes at one speed need not be independent: their mean has the error of a series.
+    An error that all strokes share does not decrease in their mean.
     """
     values = [seen.mean[part] for part in members]
     means = []
@@ -200,7 +200,7 @@ def _of_series(values: np.ndarray, errors: np.ndarray) -> Mean:
     wide = sem * (NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975)))
     known = errors[np.isfinite(errors)]
     own = float(np.sqrt((known**2).sum()) / max(known.size, 1))
-    if NORMAL * own > wide:  # strokes that agree better than each of them is known
+    if NORMAL * own > wide:  # strokes that agree better than their own errors
         return Mean(float(values.mean()), own, NORMAL * own)
     return Mean(float(values.mean()), sem, wide)
 
@@ -235,9 +235,10 @@ def run_means(
     Parameters
     ----------
     speed, value, sem, u95
-        Of each stroke in the order of time; the value in any unit, the speed in m/s (stroke).
+        Columns of the strokes in temporal order; the value in any unit, the speed in m/s (stroke).
     pairs
-        The same number for the two strokes of a pair, below 0 for one without a partner (stroke).
+        The same number for the two strokes of a pair, below 0 for a stroke without a partner
+        (stroke).
     tolerance
         Largest relative difference of the speeds of one point.
     shared

@@ -79,7 +79,7 @@ def running_in(
     segments: xr.Dataset | None = None,
     friction: xr.Dataset | None = None,
 ) -> xr.Dataset:
-    """Friction along a run at one speed, the end of running-in, and the steady value.
+    """Return friction along a run at one speed, the end of running-in, and the steady value.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def running_in(
 
 
 def histories_of(run: xr.Dataset, friction: xr.Dataset) -> list[History]:
-    """Friction along a run at each speed with enough sliding.
+    """Return friction along a run at each speed with enough sliding.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def histories_of(run: xr.Dataset, friction: xr.Dataset) -> list[History]:
 
 
 def _cycles_of(run: xr.Dataset) -> xr.Dataset | None:
-    """Cycles of a reciprocating run; None for other runs."""
+    """Return the cycles of a reciprocating run; None for other runs."""
     try:
         return friction_per_cycle(run)
     except AnalysisError:
@@ -295,7 +295,7 @@ def _mean(values: np.ndarray, common: float) -> Mean:
 
 
 def _wear(run: xr.Dataset, time: np.ndarray) -> np.ndarray:
-    """Mean displacement normal to the contact around each time, relative to the first."""
+    """Return the mean normal displacement around each time, relative to the first."""
     if "height_displacement" not in run:
         return np.zeros(0)
     edges = np.concatenate([[-np.inf], (time[1:] + time[:-1]) / 2, [np.inf]])

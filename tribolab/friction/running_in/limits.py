@@ -24,7 +24,7 @@ LONGEST_CHANGE_AT_END = Limit(
     1 / 3, "1", "share of a run that a change at its end may take: else the end is the steady part"
 )
 MIN_VALUES = Limit(20, "1", "strokes, or stretches, of a run in which running-in is looked for")
-"""As for the trend along a run's strokes; below, Burg's models have too few values."""
+"""As for the trend along a run's strokes; with fewer values Burg's models are unreliable."""
 MIN_TIME_AT_ONE_SPEED = Limit(
     0.8, "1", "share of the sliding time at one speed: the rest of such a run is start and stop"
 )

@@ -58,7 +58,7 @@ class Settling(NamedTuple):
 
 
 def blocks_of(values: np.ndarray, most: int) -> np.ndarray:
-    """Means over at most so many equal intervals (stretch)."""
+    """Return means over equal intervals, at most `most` (stretch)."""
     if values.size <= most:
         return values
     edges = np.linspace(0, values.size, most + 1).astype(int)
@@ -154,17 +154,17 @@ def _settling(values: np.ndarray) -> Settling:
     spread = np.linalg.pinv(jacobian.T @ jacobian) * noise
     slope = np.array([0.0, constant / max(abs(coefficients[1]), 1e-9), times])
     doubt = size * float(np.sqrt(max(slope @ spread @ slope, 0.0)))
-    more = _is_more(fit, constant, own, freedom)
+    more = _has_slow_remainder(fit, constant, own, freedom)
     return Settling(RUN_IN, start, size, doubt, first, more)
 
 
 def _shape(time: np.ndarray, constant: float | None) -> np.ndarray:
-    """Line, or exponential with a time constant (stretch)."""
+    """Return a line, or an exponential with a time constant (stretch)."""
     return time if constant is None else np.exp(-time / constant)
 
 
 def _best_course(fit: _Fit) -> tuple[float | None, float]:
-    """Best time constant, None for a line, and the sum of squares."""
+    """Return the best time constant, None for a line, and the sum of squares."""
     squares = []
     times = [None, *_TIME_GRID[_TIME_GRID > 1.2 / fit.time.size].tolist()]
     for constant in times:
@@ -193,7 +193,7 @@ def _refine(fit: _Fit, constant: float) -> float:
 
 
 def _coarse_noise(rest: np.ndarray, fitted: int) -> tuple[float, float]:
-    """Variance of the residuals at the lowest frequencies, and its degrees of freedom."""
+    """Return the residual variance at the lowest frequencies, and its degrees of freedom."""
     coarse = blocks_of(rest, int(of_means.COARSE_BLOCKS.value))
     sieve = sieve_of((coarse - coarse.mean())[None], fitted)
     noise = float(sieve.long_run_variance[0]) * rest.size / coarse.size
@@ -201,7 +201,7 @@ def _coarse_noise(rest: np.ndarray, fitted: int) -> tuple[float, float]:
 
 
 def _noise(rest: np.ndarray, shape: np.ndarray, constant: float | None) -> tuple[float, float]:
-    """Variance of the residuals against which a fit is tested, and its degrees of freedom."""
+    """Return the residual variance against which a fit is tested, and its degrees of freedom."""
     noise, freedom = _coarse_noise(rest, 3)
     if constant is None or constant > limits.SHORT_TIME.value:
         return noise, freedom
@@ -213,7 +213,7 @@ def _noise(rest: np.ndarray, shape: np.ndarray, constant: float | None) -> tuple
 
 
 def _step(fit: _Fit, least: float, size: int) -> Settling | None:
-    """Step that describes the sequence better than line and exponential; else None."""
+    """Return a step that describes the sequence better than line and exponential; else None."""
     values, count = fit.values, fit.values.size
     edge = max(4, count // 50)
     total = np.concatenate([[0.0], np.cumsum(values)])
@@ -232,8 +232,8 @@ def _step(fit: _Fit, least: float, size: int) -> Settling | None:
     return Settling(STEP, int(place / count * size), size, size / count, np.nan)
 
 
-def _is_more(fit: _Fit, constant: float, own: np.ndarray, freedom: float) -> bool:
-    """Whether a line or a slower exponential remains in the residuals of the fit."""
+def _has_slow_remainder(fit: _Fit, constant: float, own: np.ndarray, freedom: float) -> bool:
+    """Return whether a line or a slower exponential remains in the residuals of the fit."""
     sure = special.stdtrit(freedom, 1 - limits.BY_CHANCE.value)
     for other in (fit.time, np.exp(-fit.time / (4 * constant))):
         rest, size, design = fit.rest(np.exp(-fit.time / constant), own, other)

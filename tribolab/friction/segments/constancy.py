@@ -2,15 +2,15 @@
 
 Notes
 -----
-A plateau and the flat top of a sinusoid look alike from within. Three questions part them, and
-none of them looks at what the rest of the record does:
+A plateau and the flat top of a sinusoid look alike from within. Three criteria distinguish them,
+using only the piece and its neighbourhood:
 
 1. The cubic through the piece may change by no more than `drift` of the speed: a triangle has no
    trend, but it has a curvature.
 2. A plateau ends. If its speed changes gradually, over more than `MIN_GRADUAL_END` of its length,
-   the quartic through the piece and what lies beside it shows whether both are one motion: it then
-   describes the piece better than a constant does.
-3. Ends that stand off the level by more than half of `drift` belong to the ramp beside it.
+   a quartic through the piece and its neighbourhood tests whether both are one motion: it then
+   describes the piece better than a constant.
+3. Ends that deviate from the level by more than half of `drift` belong to the adjacent ramp.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.proof import Readings, surely_changes
 
 _BINS_OF_PIECE = 16  # bins within a piece
-_NEIGHBOURHOOD = 1.5  # of its length are looked at on each side
-# readings of a piece whose bins hold too few to tell their own noise
+_NEIGHBOURHOOD = 1.5  # of its length are examined on each side
+# readings of a piece whose bins contain too few to estimate their noise
 _FEW_READINGS = 16 * _BINS_OF_PIECE
 
 
@@ -48,7 +48,7 @@ class MeanVelocities:
     ) -> None:
         self.time = time
         self._from_position = position is not None
-        # what white noise of a bin becomes in one of twice the width
+        # noise of a bin of twice the width, relative
         self.averaging = 2**-1.5 if self._from_position else 2**-0.5
         own = position if position is not None else velocity
         if own is None:
@@ -56,16 +56,15 @@ class MeanVelocities:
         self.readings = Readings(time, own, self._from_position)
         values = running_median(own) if self._from_position else own
         self._first = float(values[0])
-        # small numbers add up without loss
+        # offsets are subtracted so that sums do not lose precision
         self._total = running_total(values, self._first)
         self._moment = running_total(time if self._from_position else time[:0], float(time[0]))
 
     def means(self, edges: np.ndarray) -> np.ndarray:
-        """Mean velocity between successive times; NaN without samples.
+        """Return the mean velocity between successive times; NaN without samples.
 
-        From the velocity it is, where there are enough samples, the mean of the middle half of
-        eight parts, so that a spike is outvoted; from the position the slope between its means
-        around the two times.
+        From the velocity, with enough samples: mean of the middle half of eight sorted parts,
+        robust to spikes. From the position: slope between its means around the two times.
         """
         return self._slopes(edges) if self._from_position else self._levels(edges)
 
@@ -93,13 +92,13 @@ class MeanVelocities:
 
 
 def _fit(place: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
-    """Polynomial of least squares at the places it was fitted to."""
+    """Return the least-squares polynomial at the places it was fitted to."""
     basis = np.polynomial.legendre.legvander(place, degree)
     return basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
 
 
 def _scatter(values: np.ndarray) -> float:
-    """Return the standard deviation of bins from bin to bin, which no slow change adds to."""
+    """Return the standard deviation from bin to bin, which slow changes do not affect."""
     if values.size < 4:
         return 0.0
     return float(median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6)))
@@ -126,7 +125,7 @@ def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tupl
         Relative change that a constant speed may show.
     """
     noise = 0.0
-    # coarser where noise hides the ends
+    # coarser bins if noise hides the ends
     for count in (
         4 * _BINS_OF_PIECE,
         2 * _BINS_OF_PIECE,
@@ -141,14 +140,14 @@ def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tupl
         if not np.isfinite(middle).any():
             break
         level = float(median_of_known(middle))
-        # few bins tell their scatter poorly: no less than the finer ones'
+        # few bins determine their scatter poorly: use at least that of the finer ones
         noise = max(_scatter(middle), noise)
         limit = max(drift / 2 * abs(level), 4 * noise)
         off = np.abs(values - level) > limit
         off &= np.isfinite(values)
         before = int(np.argmin(np.append(off, False)))
         after = int(np.argmin(np.append(off[::-1], False)))
-        if before + after >= count // 2:  # not the ends: the piece has no level
+        if before + after >= count // 2:  # deviations not only at the ends: the piece has no level
             break
         first, last = int(at[before]), int(at[count - after])
         if limit > 4 * noise:
@@ -158,7 +157,7 @@ def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tupl
 
 
 def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bool:
-    """Whether a piece has constant speed.
+    """Return whether a piece has constant speed.
 
     Parameters
     ----------
@@ -172,7 +171,7 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
     Returns
     -------
     bool
-        False only where the data are sure of it: see the notes of this module.
+        False only if the data show it clearly: see the notes of this module.
     """
     count = min(_BINS_OF_PIECE, last - first)
     if count < limits.MIN_BINS_OF_CURVATURE.value:
@@ -189,7 +188,7 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
     place = np.linspace(-1, 1, count)[known]
     inside = inside[known]
     level = float(inside.mean())
-    core = slice(1, -1)  # what starting and stopping add to the ends is trimmed off
+    core = slice(1, -1)  # starting and stopping transients at the ends are trimmed
     if _changes(place[core], inside[core], drift * abs(level)):
         return False
     if last - first <= _FEW_READINGS and surely_changes(
@@ -200,29 +199,29 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
         data, begin, end, last - first, limits.MAX_DRIFTS_FROM_PLATEAU.value * drift * abs(level)
     ):
         return False
-    return not _goes_on(data, inside, begin, end, level, drift)
+    return not _is_one_motion(data, inside, begin, end, level, drift)
 
 
 def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
-    """Whether bins change significantly by more than `most` along the piece."""
+    """Return whether bins change significantly by more than `most` along the piece."""
     cubic = _fit(place, values, 3)
     left = float(((values - cubic) ** 2).sum())
     about = float(((values - values.mean()) ** 2).sum())
     variance = max(left, 1e-12 * float((values**2).sum())) / max(values.size - 4, 1)
     if np.ptp(cubic) > most and about - left > limits.MIN_GAIN_OF_CUBIC.value * variance:
         return True
-    # a kink is no cubic: means of quarters, whose range is three quarters of a ramp's
+    # a kink is not cubic: compare means of quarters, whose range is 3/4 of a ramp's
     parts = np.array_split(values, 4)
     apart = float(np.ptp([part.mean() for part in parts])) * 4 / 3
     scatter = float(np.sqrt(np.mean(np.diff(values, 2) ** 2) / 6))
-    sure = 8 * (1 + 8 / values.size)  # few bins tell their scatter poorly
+    sure = 8 * (1 + 8 / values.size)  # few bins determine their scatter poorly
     return apart > most and apart > sure * scatter / np.sqrt(values.size / 4)
 
 
 def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, most: float) -> bool:
-    """Whether an oscillation, not noise, changes the speed by more than `most` (rms)."""
+    """Return whether an oscillation, not noise, changes the speed by more than `most` (rms)."""
     count = min(samples, 1024)
-    # wider bins show what noise hides from narrow ones
+    # wider bins reveal changes that noise hides in narrow ones
     while count >= 4 * limits.MIN_BINS_OF_CURVATURE.value:
         values = data.means(np.linspace(begin, end, count + 1))
         values = values[np.isfinite(values)]
@@ -230,7 +229,7 @@ def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, mo
             float(values.var()) if values.size >= 4 * limits.MIN_BINS_OF_CURVATURE.value else 0.0
         )
         if variance > most**2:
-            # von Neumann: white noise differs between neighbours as much as anywhere
+            # von Neumann ratio: in white noise neighbours differ as much as distant bins
             alike = 1 - float(np.mean(np.diff(values) ** 2)) / (2 * variance)
             if (
                 alike > limits.MIN_CORRELATION_OF_FLUCTUATION.value + 1 / np.sqrt(values.size)
@@ -241,7 +240,7 @@ def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, mo
     return False
 
 
-def _goes_on(
+def _is_one_motion(
     data: MeanVelocities,
     inside: np.ndarray,
     begin: float,
@@ -249,7 +248,7 @@ def _goes_on(
     level: float,
     drift: float,
 ) -> bool:
-    """Whether one smooth motion passes through the piece and its neighbours."""
+    """Return whether one smooth motion passes through the piece and its neighbours."""
     count = inside.size
     width = (end - begin) / count
     steps = np.arange(int(_NEIGHBOURHOOD * count) + 1)
@@ -258,7 +257,7 @@ def _goes_on(
         inner = (edges >= data.time[0] - width / 2) & (edges <= data.time[-1] + width / 2)
         values = data.means(edges[inner]) if inner.any() else np.zeros(0)
         sides.append(values)
-    sides[0] = sides[0][::-1]  # from the piece outwards
+    sides[0] = sides[0][::-1]  # ordered outwards from the piece
     near = []
     for values in sides:
         close = np.abs(
@@ -278,7 +277,7 @@ def _goes_on(
     own = slice(near[0].size, near[0].size + count)
     about = float(((inside - level) ** 2).sum()) / (count - 1)
     left = float(((inside - smooth[own]) ** 2).sum()) / count * values.size / (values.size - 5)
-    # the longer the way on which a plateau is left, the more it has to prove that it is one
+    # the more gradually a plateau ends, the stronger the evidence required
     return bool(
         left
         < np.interp(

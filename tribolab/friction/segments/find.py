@@ -55,12 +55,12 @@ def find_segments(
     Parameters
     ----------
     run
-        Dataset with dim ``time`` and one of ``sliding_velocity``, ``position``, ``step``; the
-        first of these that is there is used (see Notes). If the position stands still in segments
-        of the recorded velocity, the position is used.
+        Dataset with dim ``time`` and one of ``sliding_velocity``, ``position``, ``step``; the first
+        available one is used (see Notes). If the position shows standstills in segments of the
+        recorded velocity, the position is used.
     trim
-        Share of each segment's duration that is left out at each end, 0 <= trim < 0.5; ``"10 %"``
-        is 0.1. Several shares, over a dim of their own, make that a dim of the result.
+        Share of each segment's duration that is omitted at each end, 0 <= trim < 0.5; ``"10 %"`` is
+        0.1. The dim of an array of several shares becomes a dim of the result.
     resolution
         Relative difference of speed that separates two neighbouring plateaus.
     drift
@@ -71,56 +71,53 @@ def find_segments(
         Shortest segment [s].
     max_gap
         Longest pause between two samples within a segment [s]; by default a twentieth of the
-        segment (a quarter if ``position`` shows that the speed held) and no less than 20 usual
-        sample spacings.
+        segment (a quarter if the segments are from ``position``) and at least 20 usual sample
+        spacings.
     rest_speed
         Speed below which the slider is at rest [m/s]; by default a twentieth of the noise of a
-        reading, or 1e-5 of the highest speed, unless more than a hundredth of the longest slide
-        is covered so slowly.
+        reading, or 1e-5 of the highest speed, unless more than 1 % of the longest slide is covered
+        at such low speed.
     position_range
-        Only the part of each trimmed segment between these positions [m] counts.
+        Only the part of each trimmed segment between these positions [m] is used.
     stroke_middle
-        For a slider that moves to and fro and never at constant speed, as a crank drives it: each
-        stroke is a segment, and of it this share of its length about the middle counts ("40 %" of
-        a sinusoidal stroke is within 9 % of its highest speed). Neither `trim` nor what concerns
-        constant speed applies then; what lies before the first and after the last turn is
-        omitted. By default half of each stroke of a run that is never (or for less than a
-        twentieth of the time) at constant speed and whose speed follows from a stroke and a
-        frequency (attribute ``stroke_m``), or whose position and friction tell that it goes stroke
-        after stroke, each
-        like the last; unless a `position_range` is given.
+        For a reciprocating slider without constant speed, as driven by a crank: each stroke is a
+        segment, of which this share of its length around the middle is used ("40 %" of a sinusoidal
+        stroke is within 9 % of its highest speed). `trim` and the limits of constant speed do not
+        apply then; the record before the first and after the last turn is omitted. Default, unless
+        a `position_range` is given: half of each stroke if the run is never (or for less than 5 %
+        of the time) at constant speed, and its speed follows from a stroke and a frequency
+        (attribute ``stroke_m``), or its position and friction show equal reciprocating strokes.
 
     Returns
     -------
     xarray.Dataset
         On dim ``segment``: ``start``, ``stop``, ``trimmed_start``, ``trimmed_stop`` [s],
         ``sliding_speed`` [m/s], ``direction`` (+1, -1; 0 unknown), ``sliding_distance`` [m] and
-        ``samples`` of the trimmed part, and the run's labels (``set_speed``, ``step`` ...) where
-        it has them. On dim ``omitted``: ``omitted_start``, ``omitted_stop`` [s] and
-        ``omitted_reason``. Attributes ``trim`` and ``velocity_source`` (``"recorded"``,
-        ``"position"``, ``"step"`` or ``"set speed"``); with a `position_range`,
-        ``position_low_m`` and ``position_high_m``; of middles of strokes ``stroke_middle``;
-        ``standstill_s`` if the position stands still while the recorded velocity says otherwise.
+        ``samples`` of the trimmed part, and the run's labels (``set_speed``, ``step`` ...) if any.
+        On dim ``omitted``: ``omitted_start``, ``omitted_stop`` [s] and ``omitted_reason``.
+        Attributes ``trim`` and ``velocity_source`` (``"recorded"``, ``"position"``, ``"step"`` or
+        ``"set speed"``); with a `position_range`, ``position_low_m`` and ``position_high_m``; for
+        middles of strokes ``stroke_middle``; ``standstill_s`` if the position shows standstills
+        that contradict the recorded velocity.
 
     Raises
     ------
     AnalysisError
-        If `trim` is out of range, the run has no samples, or nothing tells its speed.
+        If `trim` is out of range, the run has no samples, or its speed is unknown.
 
     Notes
     -----
-    The segments of the paper [1]_ (Appendix C): "for each imposed sliding speed, the
-    corresponding constant-velocity segment was identified from the velocity signal. The first
-    and final 10 % of each segment were excluded". A step of relative height s between two
-    plateaus of N samples with white relative noise r is resolved where
-    s > max(resolution, 18 r sqrt(2/N)).
+    The segments of the paper [1]_ (Appendix C): "for each imposed sliding speed, the corresponding
+    constant-velocity segment was identified from the velocity signal. The first and final 10 % of
+    each segment were excluded". A step of relative height s between two plateaus of N samples with
+    white relative noise r is resolved if s > max(resolution, 18 r sqrt(2/N)).
 
-    From ``position`` the velocity is a robust slope over blocks that are just long enough.
-    Without velocity and position each ``step`` is a segment (speed from ``set_speed`` where
-    known, direction from the sign of the mean friction force); with a set speed alone
-    (variable or attribute ``set_speed_m_s``) the whole record is one segment. Of a run whose rows
-    are results (attribute ``rows_are``: ``"points"``; ``"either"`` where no speed is held) each row
-    that moves is a segment of one sample: its mean is the row's, and its error is not known.
+    From ``position`` the velocity is a robust slope over blocks that are just long enough. Without
+    velocity and position each ``step`` is a segment (speed from ``set_speed`` if known, direction
+    from the sign of the mean friction force); with a set speed alone (variable or attribute
+    ``set_speed_m_s``) the whole record is one segment. If the rows of a run are results (attribute
+    ``rows_are``: ``"points"``, or ``"either"`` without plateaus), each moving row is a segment of
+    one sample of unknown error.
 
     References
     ----------
@@ -153,7 +150,7 @@ def find_segments(
         if "stroke_m" not in run.attrs:
             stretches, stands = without_standstills(run, stretches)
             source = "position" if stands else source
-        if "stroke_m" in run.attrs:  # computed without noise: only what does not move rests
+        if "stroke_m" in run.attrs:  # computed without noise: only zero velocity is rest
             stretches = [_driven(run, stretch) for stretch in stretches]
     elif source == "position":
         stretches = apart(run, from_position(run, constancy, gap))
@@ -181,19 +178,19 @@ def find_segments(
         return _of_points(run, source)
     if "stroke_m" not in run.attrs and not shuttles(run):
         return plateaus
-    try:  # what a crank drives is never at constant speed: each stroke has a middle
+    try:  # a crank-driven slider has no constant speed: use the middles of its strokes
         return _of_strokes(
             run,
             source,
             limits.MIDDLE_OF_CRANK_STROKE.value,
             min(min_samples, limits.MIN_SAMPLES_OF_MIDDLE.value),
         )
-    except AnalysisError:  # it does not move to and fro: why no plateau was found says more
+    except AnalysisError:  # not reciprocating: the reason why no plateau was found is more useful
         return plateaus
 
 
 def _covered(run: xr.Dataset, plateaus: xr.Dataset) -> float:
-    """Share of a run's time in plateaus."""
+    """Return the share of a run's time in plateaus."""
     time = run["time"].values
     lasted = float((plateaus["stop"] - plateaus["start"]).sum())
     return lasted / float(time[-1] - time[0]) if time[-1] > time[0] else 1.0
@@ -236,7 +233,7 @@ def why_no_segment(segments: xr.Dataset) -> str:
 
 
 def _driven(run: xr.Dataset, stretch: Stretch) -> Stretch:
-    """Reclassify as ramps the strokes of a crank, whose mean velocity has no meaning."""
+    """Return a rest as a ramp if a crank's stroke within it has a velocity."""
     first, last = np.searchsorted(run["time"].values, (stretch.start, stretch.stop))
     if stretch.kind != "at rest" or not run["sliding_velocity"].values[first : last + 1].any():
         return stretch
@@ -297,13 +294,13 @@ def measured(
     run
         The run.
     stretches
-        Those of kind "constant" become segments, the others are what is omitted.
+        Intervals of kind "constant" become segments, the others are omitted.
     source
-        What tells the speed, as the attribute ``velocity_source`` says it.
+        Source of the speed, as in the attribute ``velocity_source``.
     trim, position_range
         As for `find_segments`.
     trimmed
-        First and last moment of the part of each segment that counts, if `trim` does not tell.
+        First and last time of the used part of each segment, instead of `trim`.
     """
     kept = [s for s in stretches if s.kind == "constant"]
     left = [s for s in stretches if s.kind != "constant"]
@@ -363,7 +360,7 @@ def _within(
     low: float,
     high: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Narrow each segment to the part between two positions."""
+    """Return start and end of each segment narrowed to the part between two positions."""
     if "position" not in run:
         raise AnalysisError(
             f"{name_of(run)}: position_range is given, but the run has no 'position'"
@@ -384,7 +381,7 @@ def _within(
 def _mean_velocity(
     run: xr.Dataset, first: np.ndarray, last: np.ndarray, guess: np.ndarray
 ) -> np.ndarray:
-    """Mean of the recorded velocity over each trimmed segment, without outliers."""
+    """Return the mean recorded velocity over each trimmed segment, without outliers."""
     velocity = run["sliding_velocity"].values
     result = guess.copy()
     for i in one_by_one(range(first.size)):
@@ -395,7 +392,7 @@ def _mean_velocity(
         if part.size == 0:
             continue
         rest = np.abs(part - median(part))
-        # quantised readings have no median deviation: their mean deviation stands in
+        # the median deviation of quantised readings may be zero: use their mean deviation
         keep = rest <= 6 * max(median(rest) / 0.6745, np.mean(rest))
         result[i] = part[keep].mean()
     return result
@@ -404,10 +401,10 @@ def _mean_velocity(
 def _mean_slope(
     run: xr.Dataset, start: np.ndarray, stop: np.ndarray, guess: np.ndarray, degree: int
 ) -> np.ndarray:
-    """Mean slope of the position over each trimmed segment, of a polynomial of odd degree.
+    """Return the mean slope of the position over each trimmed segment, from an odd polynomial.
 
-    Of a stroke whose speed is not constant a line will not do: through a sine it is steeper than
-    the way over the time, by 22 % over a whole stroke.
+    A line is insufficient for a stroke whose speed is not constant: over a whole stroke of a sine
+    it is 22 % steeper than distance over time.
     """
     time, position = track(run)
     first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
@@ -422,12 +419,12 @@ def _mean_slope(
         span = part[-1] - part[0]
         place = 2 * (part - part[0]) / span - 1
         terms = np.polynomial.legendre.legfit(place, position[first[i] : last[i]], degree)
-        result[i] = 2 * terms[1::2].sum() / span  # the even ones are the same at both ends
+        result[i] = 2 * terms[1::2].sum() / span  # the even terms are equal at both ends
     return result
 
 
 def _label(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Median of the run's label over each segment, NaN where it has none."""
+    """Return the median of the run's label over each segment, NaN if none."""
     result = np.full(first.size, np.nan)
     for i in one_by_one(range(first.size)):
         part = values[first[i] : last[i]]

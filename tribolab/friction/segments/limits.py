@@ -1,4 +1,4 @@
-"""Limits that decide where a run slides and where it stops."""
+"""Limits for the detection of sliding and rest."""
 
 from tribolab.core.limit import Count, Limit
 

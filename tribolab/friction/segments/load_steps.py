@@ -8,8 +8,8 @@ from tribolab.arrays.medians import median
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.stretches import Stretch
 
-_LOAD_BINS = 600  # in a stretch
-_SAMPLES_PER_BIN = 10  # samples of a bin
+_LOAD_BINS = 600  # in an interval
+_SAMPLES_PER_BIN = 10  # fewest samples in a bin
 _CHANGES = "load changes"
 
 
@@ -21,16 +21,16 @@ def at_levels(
     Parameters
     ----------
     time, force
-        Of the run: [s], normal force [N] (time).
+        Times [s] and normal force [N] of the run (time).
     stretch
-        One at constant speed, in contact.
+        Interval at constant speed, in contact.
     min_samples
-        Of a segment.
+        Fewest samples of a segment.
 
     Returns
     -------
     list of Stretch
-        The stretch as it was where the load holds no levels: it wanders, or rises all the time.
+        Only the unchanged interval if the load has no levels, but drifts or rises throughout.
     """
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
     bins = min(_LOAD_BINS, (last - first) // _SAMPLES_PER_BIN)
@@ -42,7 +42,7 @@ def at_levels(
         part = np.where(np.isfinite(part), part, median(part[np.isfinite(part)]))
     mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     levels = _levels(mean, 0, bins)
-    kept = [_held(mean, a, b) for a, b in levels]
+    kept = [_trim_level(mean, a, b) for a, b in levels]
     if len(levels) < 2 or any(b - a < limits.MIN_BINS_OF_LEVEL.value for a, b in kept):
         return [stretch]
     loads = np.sort([abs(float(median(mean[a:b]))) for a, b in kept])
@@ -68,7 +68,7 @@ def at_levels(
 
 
 def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
-    """Split bins where the scatter becomes smallest, if both sides differ by a step."""
+    """Return the bins split to minimise the scatter, if both sides differ by a step."""
     part = mean[first:last]
     if part.size < 2 * limits.MIN_BINS_OF_LEVEL.value:
         return [(first, last)]
@@ -87,7 +87,7 @@ def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
     return [*_levels(mean, first, first + cut), *_levels(mean, first + cut, last)]
 
 
-def _held(mean: np.ndarray, first: int, last: int) -> tuple[int, int]:
+def _trim_level(mean: np.ndarray, first: int, last: int) -> tuple[int, int]:
     """Return the bins of a level without transitions at its ends."""
     level = float(median(mean[first:last]))
     near = np.flatnonzero(

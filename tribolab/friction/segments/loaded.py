@@ -19,7 +19,7 @@ from tribolab.friction.zero.limits import (
 )
 
 _NO_LOAD = "no load"
-_CONTACT_BINS = 200  # in a stretch
+_CONTACT_BINS = 200  # in an interval
 
 
 def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits) -> list[Stretch]:
@@ -28,24 +28,24 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits
     Parameters
     ----------
     run
-        The run; without ``normal_force`` nothing is taken out.
+        The run; without ``normal_force`` nothing is removed.
     stretches
-        All stretches of the run in order.
+        All intervals of the run in order.
     constancy
         `min_samples` of a segment.
 
     Returns
     -------
     list of Stretch
-        The stretches with those without load of kind ``"no load"``; a stretch whose load was taken
-        off or put on in its course is cut there, and one whose load steps at each step.
+        The intervals, unloaded ones of kind ``"no load"``; an interval is cut where the load is
+        removed or applied within it, and at each step of the load.
     """
     if "normal_force" not in run:
         return stretches
     time, force = run["time"].values, np.asarray(run["normal_force"].values, float)
     middles = {k: _median(time, force, stretches, k) for k in ("constant", "at rest")}
     sliding = middles["constant"]
-    # of the loads that press: more strokes without load than with it are no usual load
+    # median of the loads under contact: even if most strokes are unloaded
     pressing = sliding[
         (sliding > 0) & (sliding > MAX_DRIFT_OF_LOAD_ZERO.value * sliding.max(initial=0.0))
     ]
@@ -61,7 +61,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits
     result: list[Stretch] = []
     for stretch in one_by_one(stretches):
         if stretch.kind == "constant":
-            result += _cut(time, force, zero, stretch, least, constancy.min_samples)
+            result += _cut_at_contact(time, force, zero, stretch, least, constancy.min_samples)
         else:
             result.append(stretch)
     cut: list[Stretch] = []
@@ -97,7 +97,7 @@ def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind:
     return np.array(levels)
 
 
-def _cut(
+def _cut_at_contact(
     time: np.ndarray,
     force: np.ndarray,
     zero: float,
@@ -105,7 +105,7 @@ def _cut(
     least: float,
     min_samples: int,
 ) -> list[Stretch]:
-    """Interval cut where its load begins or ends."""
+    """Return an interval cut where its load begins or ends."""
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
     count = min(_CONTACT_BINS, last - first)
     if count < 1:
@@ -118,7 +118,7 @@ def _cut(
         return [stretch]
     if bare.all():
         return [stretch._replace(kind=_NO_LOAD)]
-    away = _grown(bare, mean < limits.MIN_LOAD_OF_LOADED.value * float(median(mean[~bare])))
+    away = _grow_bins(bare, mean < limits.MIN_LOAD_OF_LOADED.value * float(median(mean[~bare])))
     edges = np.flatnonzero(np.diff(away)) + 1
     if edges.size > 2 * limits.MAX_CONTACT_LOSSES.value:
         return [stretch]
@@ -136,8 +136,8 @@ def _cut(
     return result
 
 
-def _grown(seed: np.ndarray, allowed: np.ndarray) -> np.ndarray:
-    """Return the runs of allowed bins that contain a seed, including load ramps."""
+def _grow_bins(seed: np.ndarray, allowed: np.ndarray) -> np.ndarray:
+    """Return the contiguous allowed bins that contain a seed, including load ramps."""
     allowed = allowed | seed
     number = np.cumsum(np.diff(allowed, prepend=False) & allowed)
     holding = np.unique(number[seed])

@@ -20,9 +20,9 @@ from tribolab.friction.segments.plateaus import (
 )
 from tribolab.friction.segments.proof import is_proven
 
-_MAX_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
-_LEFTOVER_BLOCKS = 512  # in a second look
-# the value of a block is the median of the means of its parts, so a spike is outvoted
+_MAX_BLOCKS = 16384  # more blocks cost time without benefit: leftovers are searched again
+_LEFTOVER_BLOCKS = 512  # blocks in a second search
+# the value of a block is the median of the means of its parts, robust to spikes
 _PARTS_OF_BLOCK = 8
 _KEPT = ("constant", "at rest")
 
@@ -57,13 +57,13 @@ def locate(
     time, velocity
         Finite samples [s], [m/s]; the spacing may change.
     constancy
-        What counts as constant.
+        Limits of constant speed.
     floor
-        Least noise of a sample [m/s], where it is known.
+        Least noise of a sample [m/s], if known.
     """
     pieces = _locate(time, velocity, constancy, None, None, floor)
-    pieces = _settled(_bridged(_fused(pieces, constancy), constancy), constancy)
-    return _proven(pieces, constancy)
+    pieces = _drop_transient(_bridge_bumps(_join_equal(pieces, constancy), constancy), constancy)
+    return _drop_unproven(pieces, constancy)
 
 
 def moving(
@@ -74,14 +74,14 @@ def moving(
 ) -> list[VelocityPiece]:
     """Reclassify creep as rest if it is slow compared with the highest speed.
 
-    So is the noise of a speed that was recorded without its sign: its mean is not zero.
+    Also reclassify the noise of a speed recorded without its sign, whose mean is not zero.
 
     Parameters
     ----------
     time, pieces
         Samples [s], and pieces of the whole record.
     constancy
-        A `rest_speed` of these decides alone.
+        If these include a `rest_speed`, it alone decides.
     velocity
         The record [m/s], if the speed was recorded.
     """
@@ -93,7 +93,7 @@ def moving(
     least = limits.MIN_DISTANCE_OF_CREEP.value * max(
         d for d, p in zip(way, pieces, strict=True) if p.kind == "constant"
     )
-    return _fused(
+    return _join_equal(
         [
             p._replace(kind="at rest")
             if p.kind == "constant"
@@ -113,7 +113,7 @@ def moving(
 
 
 def _is_folded_noise(velocity: np.ndarray) -> bool:
-    """Whether a speed is rectified noise about zero: its scatter is 0.76 of its mean."""
+    """Return whether a speed is rectified noise about zero: its scatter is 0.76 of its mean."""
     if (
         velocity.size < limits.MIN_SAMPLES_OF_UNSIGNED_NOISE.value
         or velocity.min() < 0 < velocity.max()
@@ -132,11 +132,11 @@ def held(
     Parameters
     ----------
     data
-        The record that the pieces are of.
+        The record of the pieces.
     pieces
         From `locate`, in samples of the record.
     constancy
-        What counts as constant.
+        Limits of constant speed.
     """
     result: list[VelocityPiece] = []
     for piece in one_by_one(pieces):
@@ -147,34 +147,34 @@ def held(
         kind = "constant" if is_constant(data, first, last, constancy.drift) else "ramp"
         parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
         result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]
-    return _beside(data, _paused(_fused(result, constancy), constancy), constancy)
+    return _merge_short(data, _merge_pauses(_join_equal(result, constancy), constancy), constancy)
 
 
-def _beside(
+def _merge_short(
     data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
     """Merge a short plateau into an adjacent ramp unless the data show that it is distinct.
 
-    A ramp is all that lies between two plateaus or rests.
+    A ramp extends from one plateau or rest to the next.
     """
     result = list(pieces)
     for i, piece in enumerate(pieces):
         if piece.kind != "constant":
             continue
         begin, end = data.time[piece.first], data.time[piece.last - 1]
-        before, after = (_until_kept(data.time, pieces, i, way) for way in (-1, 1))
+        before, after = (_time_to_plateau(data.time, pieces, i, way) for way in (-1, 1))
         if max(before, after) <= limits.MAX_RAMP_OVER_PLATEAU.value * (end - begin):
             continue
         sides = before > end - begin, after > end - begin
         if not is_proven(data.readings, begin, end, constancy.drift * abs(piece.velocity), sides):
             result[i] = piece._replace(kind="ramp")
-    return _fused(result, constancy)
+    return _join_equal(result, constancy)
 
 
-def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
-    """Time [s] from a piece to the next plateau or rest on one side, without pauses.
+def _time_to_plateau(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
+    """Return the time [s] from a piece to the next plateau or rest on one side, without pauses.
 
-    In a pause nothing was recorded, so that it shows no ramp.
+    A pause without samples does not show a ramp.
     """
     at = index + way
     while 0 <= at < len(pieces) and pieces[at].kind not in _KEPT:
@@ -189,7 +189,7 @@ def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: 
     return float(spans[spans <= limits.MIN_INTERVALS_OF_PAUSE.value * usual].sum())
 
 
-def _paused(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
+def _merge_pauses(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Merge a short pause into a long ramp that continues in the same direction."""
     result = list(pieces)
     for i in range(1, len(pieces) - 1):
@@ -200,7 +200,7 @@ def _paused(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[Vel
         one_way = (piece.velocity - before.velocity) * (after.velocity - piece.velocity) > 0
         if one_way and shortest > limits.MIN_RAMP_OVER_PAUSE.value * (piece.last - piece.first):
             result[i] = piece._replace(kind="ramp")
-    return _fused(result, constancy)
+    return _join_equal(result, constancy)
 
 
 def block_size(samples: int, most: int = _MAX_BLOCKS) -> int:
@@ -211,7 +211,7 @@ def block_size(samples: int, most: int = _MAX_BLOCKS) -> int:
 
 
 def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Time and robust mean velocity of each block."""
+    """Return time and robust mean velocity of each block."""
     if size == 1:
         return time, velocity
     count = time.size // size
@@ -221,7 +221,7 @@ def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarr
         .mean(axis=1)
     )
     parts = np.sort(parts.reshape(count, _PARTS_OF_BLOCK), axis=1)
-    robust = parts[:, 2:-2].mean(axis=1)  # the middle half: nearly the mean's efficiency
+    robust = parts[:, 2:-2].mean(axis=1)  # the middle half: nearly as efficient as the mean
     begin, end = time[: count * size : size], time[size - 1 : count * size : size]
     return (begin + end) / 2, robust
 
@@ -246,7 +246,7 @@ def _locate(
     t, v = _blocks(time, velocity, size)
     if noise is None:
         noise = estimate_noise(v, floor / np.sqrt(size))
-        # a steady reading may be half a step off, and says nothing of it
+        # a steady reading may be off by half a step without scatter
         step = quantum(velocity)
         step = 0.0 if is_commanded(velocity, step) else step
         noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
@@ -264,7 +264,7 @@ def _locate(
     straight = straight_pieces(t, v, noise, breaks, constancy.resolution)
 
     pieces: list[VelocityPiece] = []
-    pending = 0  # first sample that no kept piece has taken yet
+    pending = 0  # first sample not yet in a kept piece
     edges = np.append(straight.first * size, time.size)
     fewest = constancy.min_samples if size == 1 else 4 * size
     for i in range(straight.first.size):
@@ -303,7 +303,7 @@ def _leftover(
     """Search again, with finer blocks, between two accepted pieces."""
     if first >= last:
         return []
-    if last - first == time.size:  # nothing was kept: go on with shorter stretches
+    if last - first == time.size:  # nothing was kept: continue with shorter intervals
         middle = (first + last) // 2
         return [
             piece
@@ -323,7 +323,7 @@ def _kind(
     return "ramp" if sure > drift * abs(mean) else "constant"
 
 
-def _fused(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
+def _join_equal(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Join adjacent pieces of equal class and velocity."""
     result: list[VelocityPiece] = []
     for piece in pieces:
@@ -354,7 +354,7 @@ def _same(a: VelocityPiece, b: VelocityPiece, constancy: ConstancyLimits) -> boo
     return apart <= max(constancy.resolution / 2 * size, 3 * np.hypot(a.error, b.error))
 
 
-def _bridged(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
+def _bridge_bumps(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Join two plateaus of equal velocity across a disturbance that is short compared with both."""
     result: list[VelocityPiece] = []
     for piece in pieces:
@@ -364,13 +364,13 @@ def _bridged(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[Ve
             wide = constancy._replace(resolution=2 * constancy.resolution)
             if odd.kind == "too short" and brief and _same(left, piece, wide):
                 del result[-2:]
-                result += _fused([left, piece._replace(first=odd.first)], wide)
+                result += _join_equal([left, piece._replace(first=odd.first)], wide)
                 continue
         result.append(piece)
     return result
 
 
-def _proven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
+def _drop_unproven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Reclassify a short piece as ramp unless the data show that its speed is constant."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
@@ -381,10 +381,10 @@ def _proven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[Vel
         speck = 10 * size < max((p.last - p.first for p in around if p.kind == "ramp"), default=0)
         if piece.kind == "constant" and ((uncertain and 4 * size < longest) or speck):
             result[i] = piece._replace(kind="ramp")
-    return _fused(result, constancy)
+    return _join_equal(result, constancy)
 
 
-def _settled(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
+def _drop_transient(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Reclassify as ramp a short drifting piece that leads into a long plateau."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
@@ -399,4 +399,4 @@ def _settled(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[Ve
                 and abs(piece.change) > apart / 2
             ):
                 result[i] = piece._replace(kind="ramp")
-    return _fused(result, constancy)
+    return _join_equal(result, constancy)

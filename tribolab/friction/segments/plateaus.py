@@ -1,13 +1,12 @@
 """Plateaus of a noisy velocity, from blocks at many scales.
 
-Works on bare arrays and knows nothing of files or forces; `segments` gives it the velocity.
+Works on arrays of velocity, independent of files and forces.
 
 Notes
 -----
 1. Neighbouring window means are compared at every scale W = 1, 2, 4 ... blocks (moving-sum
-   statistic, bottom-up [1]_). A break stands where they differ by more than noise and by more
-   than a relative `resolution`; a scale may add a break only where no finer scale has one
-   within its window.
+   statistic, bottom-up [1]_). A break is where they differ by more than noise and by more than a
+   relative `resolution`; a scale adds a break only if no finer scale has one within its window.
 2. Neighbouring pieces that one straight line v(t) describes as well as two are merged. A ramp
    thus becomes one steep piece, a plateau with a slow drift one nearly flat piece.
 3. A piece is a plateau if its fitted line changes by less than `drift` of its speed.
@@ -28,17 +27,17 @@ from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
 from tribolab.friction.segments import limits
 
-_LAG_BLOCKS = 4  # blocks, or windows, apart: noise with a short memory has forgotten itself
-_HEIGHT_DIGITS = 9  # digits of a height: breaks that differ by less are as high as one another
-_COST_DIGITS = 6  # digits of a cost: mergers that differ by less cost the same
-_ROUNDING_OF_SQUARES = 1e-11  # of the squares: a line that leaves less leaves what arithmetic adds
+_LAG_BLOCKS = 4  # distance of blocks, or windows, at which short-correlated noise is independent
+_HEIGHT_DIGITS = 9  # digits of a peak height: breaks that differ by less are equally high
+_COST_DIGITS = 6  # digits of a cost: mergers that differ by less have equal cost
+_ROUNDING_OF_SQUARES = 1e-11  # relative to the squares: smaller residuals of a line are rounding
 
 
 class Noise(NamedTuple):
     """Noise of one block: standard deviation sqrt(floor^2 + (r(v) * v)^2).
 
-    `speed` [m/s] ascends, and `relative` holds r there; between them it is interpolated over the
-    logarithm, so that what one speed shows is no noise of another.
+    `speed` [m/s] ascends, and `relative` is r at these speeds; between them r is interpolated over
+    the logarithm of speed.
     """
 
     floor: float
@@ -46,7 +45,7 @@ class Noise(NamedTuple):
     relative: np.ndarray
 
     def variance(self, velocity: np.ndarray | float) -> np.ndarray:
-        """Variance of one block at a velocity."""
+        """Return the variance of one block at a velocity."""
         if not self.speed.size:
             return np.full(np.shape(velocity), self.floor**2)
         size = np.abs(velocity)
@@ -55,7 +54,7 @@ class Noise(NamedTuple):
         return self.floor**2 + (share * size) ** 2
 
     def scaled(self, factor: float) -> Noise:
-        """Noise of blocks that are larger or smaller."""
+        """Return the noise of larger or smaller blocks."""
         return Noise(self.floor * factor, self.speed, self.relative * factor)
 
 
@@ -71,7 +70,7 @@ class Pieces(NamedTuple):
 
 
 def running_median(values: np.ndarray) -> np.ndarray:
-    """Return the running median of five samples, which drops spikes and keeps edges."""
+    """Return the running median of five samples, which removes spikes and preserves edges."""
     if values.size < 5:
         return values
     median = room(values.size)
@@ -93,13 +92,13 @@ def quantum(values: np.ndarray) -> float:
     if levels.size < 2 or 2 * levels.size > some.size:
         return 0.0
     gaps = np.diff(levels)
-    # what differs in the last digit only is one level
+    # values that differ only in the last digit are one level
     gaps = gaps[gaps > 1e-9 * np.abs(levels).max()]
     return float(gaps.min()) if gaps.size else 0.0
 
 
 def is_commanded(velocity: np.ndarray, step: float) -> bool:
-    """Whether a velocity is a set-point and not a rounded reading.
+    """Return whether a velocity is a set-point and not a rounded reading.
 
     Parameters
     ----------
@@ -110,8 +109,8 @@ def is_commanded(velocity: np.ndarray, step: float) -> bool:
 
     Notes
     -----
-    A rounded reading of a slow change goes up digit by digit. What was told stays as it is for long
-    and jumps from level to level; with one speed and rest alone there is no other digit to go by.
+    A rounded reading of a slow change increases digit by digit. A set-point is constant for a long
+    time and jumps from level to level.
 
     Examples
     --------
@@ -141,22 +140,23 @@ def is_commanded(velocity: np.ndarray, step: float) -> bool:
 def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     """Estimate the absolute floor and the relative part of the noise from neighbouring blocks.
 
-    The spread of differences is taken per quarter decade of speed, because the lowest speed may
-    drown in a floor that the highest does not show. The floor is no lower than `least` [m/s].
+    The spread of differences is estimated per quarter decade of speed, because a floor that is
+    negligible at high speed may dominate at the lowest. The floor is no lower than `least` [m/s].
     """
     middle, difference, near, bend = _differences(velocity)
     nothing = np.zeros(0)
     top = float(middle.max()) if middle.size else 0.0
     if top == 0:
         return Noise(least, nothing, nothing)
-    # the highest speed, and whole decades below it, lie on no edge
+    # offset: the highest speed, and whole decades below it, are not at the edge of a bin
     bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8)) + 1e-6).astype(int)
     levels = []
     for group in np.unique(bins):
         inside = bins == group
         if np.count_nonzero(inside) >= 8:
-            # a ramp has differences, but it does not bend; noise with memory hardly bends from
-            # block to block, but over more of them; digits repeat, and hide from one distance
+            # a ramp has first differences, but no second ones; correlated noise has small second
+            # differences between neighbours, but larger ones between distant blocks; digits repeat,
+            # and hide at one of the distances
             spread = max(
                 _spread(near[inside]), min(_spread(difference[inside]), _spread(bend[inside]))
             )
@@ -173,7 +173,7 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
         return Noise(floor, nothing, nothing)
     speed, spread, share = speed[known], spread[known], share[known]
     relative = np.sqrt(np.maximum(spread**2 - floor**2, 0)) / speed
-    # bins with few blocks are ramps and reversals, or a short plateau: no worse than the best
+    # bins with few blocks are ramps, reversals or a short plateau: no worse than the best
     moves = speed > 3 * floor
     best = relative[moves].min() if moves.any() else np.inf
     relative = np.where(
@@ -183,9 +183,9 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
 
 
 def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Speed around each block, first difference, bend of neighbours and of distant blocks.
+    """Return speed around each block, first difference, second differences (near and distant).
 
-    White noise gives all three its own size.
+    All three differences are scaled to the standard deviation of white noise.
     """
     far = max(1, min(_LAG_BLOCKS, (velocity.size - 1) // 8))
     left, here, right = velocity[: -2 * far], velocity[far:-far], velocity[2 * far :]
@@ -199,8 +199,8 @@ def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
 def _spread(deviation: np.ndarray) -> float:
     """Return the robust standard deviation of deviations that are mostly noise.
 
-    Quantised readings repeat, so that their median deviation is zero: then the mean below the
-    largest tenth stands in.
+    The median deviation of quantised, repeating readings is zero: then the mean without the largest
+    tenth is used.
     """
     most = np.sort(deviation)[: max(1, deviation.size * 9 // 10)]
     return float(max(median(deviation) / 0.6745, np.mean(most)))
@@ -209,11 +209,11 @@ def _spread(deviation: np.ndarray) -> float:
 def find_breaks(
     velocity: np.ndarray, noise: Noise, resolution: float, rest_speed: float
 ) -> np.ndarray:
-    """Block numbers at which the mean velocity changes, by moving sums from fine to coarse."""
+    """Return the blocks at which the mean velocity changes, by moving sums from fine to coarse."""
     m = velocity.size
     total = np.concatenate([[0.0], np.cumsum(velocity)])
     breaks = np.zeros(0, dtype=int)
-    free = np.zeros(m + 1, dtype=int)  # 1 where a break stands
+    free = np.zeros(m + 1, dtype=int)  # 1 at a break
     width, memory = 1, 1.0
     while 2 * width <= m:
         k = np.arange(width, m - width + 1, max(1, width // 64))
@@ -228,15 +228,15 @@ def find_breaks(
         crowd = np.concatenate([[0], np.cumsum(free)])
         clear = crowd[np.minimum(k + width, m + 1)] - crowd[np.maximum(k - width + 1, 0)] == 0
         if clear.any():
-            # noise with memory spreads the window means more than white noise would; windows too
-            # wide to be many cannot tell, and keep what the narrower ones told
+            # correlated noise scatters window means more than white noise; wide windows are too few
+            # for an estimate, and keep that of the narrower ones
             if 16 * width <= m:
                 usual = score[clear][:: 1 + m // 2048]
                 usual = usual[np.isfinite(usual)]
                 at = k[clear][:: 1 + m // 2048]
                 bends = [_bends(total, noise, width, far * width, at) for far in (1, _LAG_BLOCKS)]
                 if min(usual.size, *(bend.size for bend in bends)) > 16:
-                    # a ramp spreads the means as well, but it does not bend
+                    # a ramp scatters the means as well, but its second differences are zero
                     bent = max(float(median(bend)) for bend in bends)
                     spread = min(float(median(usual)), bent)
                     memory = max(memory, spread / 0.6745)
@@ -249,7 +249,7 @@ def find_breaks(
 
 
 def _bends(total: np.ndarray, noise: Noise, width: int, far: int, k: np.ndarray) -> np.ndarray:
-    """Second differences of the means of windows `far` apart in standard errors: no ramp's."""
+    """Return second differences of window means `far` apart, in standard errors; 0 for a ramp."""
     k = k[(k >= far) & (k + far + width < total.size)]
     first, second, third = (
         (total[k + i * far + width] - total[k + i * far]) / width for i in (-1, 0, 1)
@@ -268,8 +268,8 @@ def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
         return position
     if width == 1:
         return position
-    # candidates of one cluster lie close together: the highest of each bin, then thin out
-    # from rest all are as high: the earliest is taken, and not what arithmetic adds most to
+    # candidates of one cluster are close together: the highest of each bin, then thin out. From
+    # rest all are equally high: rounding selects the earliest
     order = np.argsort(-np.round(height, _HEIGHT_DIGITS), kind="stable")
     taken = np.zeros(position[-1] + width + 2, dtype=bool)
     chosen = []
@@ -284,7 +284,7 @@ def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
 def _moments(
     time: np.ndarray, velocity: np.ndarray, variance: np.ndarray, starts: np.ndarray
 ) -> np.ndarray:
-    """Weight, mean time, mean velocity and centred second moments of each piece, as columns."""
+    """Return weight, mean time, mean velocity and centred second moments of pieces, as columns."""
     weight = 1 / variance
     add = np.add.reduceat
     size = np.diff(np.append(starts, time.size))
@@ -296,8 +296,8 @@ def _moments(
     return np.stack([size.astype(float), total, t, v, *second])
 
 
-def _joined(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Moments of two pieces taken as one (pairwise update, stable)."""
+def _merge_moments(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the moments of two merged pieces (pairwise update, stable)."""
     total = a[1] + b[1]
     share = a[1] * b[1] / total
     dt, dv = b[2] - a[2], b[3] - a[3]
@@ -315,7 +315,7 @@ def _joined(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _misfit(m: np.ndarray) -> np.ndarray:
-    """Weighted squares left by the straight line through a piece."""
+    """Return the weighted squared residuals of the straight line through a piece."""
     with np.errstate(divide="ignore", invalid="ignore"):
         explained = np.where(m[4] > 0, m[5] ** 2 / m[4], 0.0)
     left = m[6] - explained
@@ -331,7 +331,7 @@ def straight_pieces(
 ) -> Pieces:
     """Merge neighbouring pieces that one straight line describes as well as two."""
     starts = np.concatenate([[0], breaks])
-    # the weight follows the mean of the piece: single readings would draw the mean towards zero
+    # the weight follows the mean of the piece: weights by single readings would bias it to zero
     size = np.diff(np.append(starts, time.size))
     level = np.repeat(np.add.reduceat(velocity, starts) / size, size)
     variance = noise.variance(level) + (1e-4 * level) ** 2
@@ -339,19 +339,18 @@ def straight_pieces(
     m = _moments(time, velocity, variance, starts)
     while m.shape[1] > 1:
         a, b = m[:, :-1], m[:, 1:]
-        left, right, both = _misfit(a), _misfit(b), _misfit(_joined(a, b))
+        left, right, both = _misfit(a), _misfit(b), _misfit(_merge_moments(a, b))
         shorter = np.minimum(a[0], b[0])
         memory = np.maximum(1.0, (left + right) / np.maximum(a[0] + b[0] - 4, 1))
         speed = np.maximum(np.abs(a[3]), np.abs(b[3]))
-        # a step s under one line leaves s/4 rms: a quarter of the resolution is the limit
+        # a step s fitted by one line leaves s/4 rms: the limit is a quarter of the resolution
         small = (resolution * speed / 4) ** 2 / (
             noise.variance(speed) + (1e-4 * speed) ** 2 + 1e-60
         )
         cost = (both - left - right) / np.maximum(
             limits.MAX_COST_OF_MERGER.value * memory, shorter * small
         )
-        # a line through two samples costs nothing: which pair is joined first tells the order in
-        # time, and not the last bit
+        # a line through two samples costs nothing: rounding makes ties merge in temporal order
         cost = np.round(cost, _COST_DIGITS)
         if not (cost < 1).any():
             break
@@ -360,7 +359,7 @@ def straight_pieces(
         merge = np.flatnonzero((cost < 1) & (cost <= ahead) & (cost < after))
         if merge.size == 0:
             merge = np.array([int(np.argmin(cost))])
-        m[:, merge] = _joined(m[:, merge], m[:, merge + 1])
+        m[:, merge] = _merge_moments(m[:, merge], m[:, merge + 1])
         m = np.delete(m, merge + 1, axis=1)
         starts = np.delete(starts, merge + 1)
     last = np.append(starts[1:], time.size)

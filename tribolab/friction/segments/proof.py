@@ -2,17 +2,17 @@
 
 Notes
 -----
-A speck of a ramp, a turning point or the top of a sinusoid is as level as noise and digits let one
-see. So a piece that is short beside the ramp it touches has to prove two things:
+A short part of a ramp, a turning point or the top of a sinusoid looks level within noise and
+digits. A piece that is short compared with the adjacent ramp must therefore meet two conditions:
 
-1. The parabola through its own readings changes by no more than `drift` of the speed, and by so
-   many readings that this is known.
-2. A level with its flanks, each a straight line of its own, describes the piece and as much
-   again on the sides of the ramp better than one smooth motion (a quartic) or one turn
-   (two lines that meet) does, by Schwarz's criterion [1]_.
+1. The parabola through its own readings changes by no more than `drift` of the speed, beyond its
+   error.
+2. A level with straight flanks describes the piece and as much again on the sides of the ramp
+   better than one smooth motion (a quartic) or one turn (two lines that meet), by Schwarz's
+   criterion [1]_.
 
-From positions the integrals of these motions are fitted to the readings themselves: differences
-of positions hold more noise than the positions do.
+If positions were recorded, the integrals of these motions are fitted to them: differences of
+positions contain more noise.
 
 References
 ----------
@@ -30,11 +30,11 @@ from tribolab.friction.segments import limits
 from tribolab.friction.segments.plateaus import running_median
 
 _FITTED_READINGS = 512  # readings of a fit; more are averaged
-_OUTLIER_SHARES = {False: 0.2, True: 0.02}  # of the range of velocities, of positions
-_SIDE_LENGTHS = (0.5, 1.0)  # lengths of the piece that are looked at beside it
-_END_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of its length a piece's end may be off
-_TURN_PLACES = np.linspace(-0.8, 0.8, 17)  # places of a turn, of half the window
-_TURN_REFINEMENTS = 4  # times the places of the turn are narrowed down, tenfold each
+_OUTLIER_SHARES = {False: 0.2, True: 0.02}  # of the range; True: positions
+_SIDE_LENGTHS = (0.5, 1.0)  # lengths of the neighbourhood examined, relative to the piece
+_END_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # trial shifts of a piece's end, relative to its length
+_TURN_PLACES = np.linspace(-0.8, 0.8, 17)  # trial positions of a turn, relative to half the window
+_TURN_REFINEMENTS = 4  # refinements of the position of the turn, tenfold each
 
 
 class Readings(NamedTuple):
@@ -51,7 +51,7 @@ class Readings(NamedTuple):
         median = running_median(values)
         if values.size:
             off = np.abs(values - median)
-            # a turn is no spike, however little noise there is
+            # a turn is not a spike, however low the noise
             least = _OUTLIER_SHARES[self.is_position] * float(np.ptp(median))
             values = np.where(
                 off > max(limits.MIN_OUTLIER.value * float(np.mean(off)), least), median, values
@@ -66,7 +66,7 @@ class Readings(NamedTuple):
 
 
 class Fit(NamedTuple):
-    """Coefficients, their covariance, variance left, readings that count, and parameters."""
+    """Coefficients, covariance, residual variance, effective readings, number of parameters."""
 
     coefficients: np.ndarray
     covariance: np.ndarray
@@ -76,7 +76,7 @@ class Fit(NamedTuple):
 
 
 def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
-    """Least squares, with reduced weight of readings with correlated residuals."""
+    """Return the least-squares fit, with fewer effective readings if residuals are correlated."""
     terms = np.linalg.lstsq(basis, values, rcond=None)[0]
     rest = values - basis @ terms
     n, k = basis.shape
@@ -90,7 +90,7 @@ def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
 
 
 def _columns(readings: Readings, place: np.ndarray, motion: list[np.ndarray]) -> np.ndarray:
-    """Velocities over the places, integrated where positions are read."""
+    """Return velocities at the places, integrated if positions were recorded."""
     columns = np.stack(motion, axis=1)
     if not readings.is_position:
         return columns
@@ -100,19 +100,19 @@ def _columns(readings: Readings, place: np.ndarray, motion: list[np.ndarray]) ->
 
 
 def change_along(readings: Readings, begin: float, end: float) -> tuple[float, float]:
-    """Change of speed along a piece by the parabola through it, and its standard error [m/s].
+    """Return the change of speed of the parabola through a piece, and its standard error [m/s].
 
     Parameters
     ----------
     readings
-        Of the record.
+        Readings of the record.
     begin, end
         The piece [s].
 
     Returns
     -------
     tuple
-        Both NaN where there are too few readings.
+        Both NaN for too few readings.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def change_along(readings: Readings, begin: float, end: float) -> tuple[float, f
 
 
 def surely_changes(readings: Readings, begin: float, end: float, most: float) -> bool:
-    """Whether the parabola through a piece changes by more than `most` [m/s], beyond chance."""
+    """Return whether the parabola through a piece clearly changes by more than `most` [m/s]."""
     change, error = change_along(readings, begin, end)
     return bool(change > most + limits.MIN_ERRORS_OF_CHANGE.value * error)
 
@@ -154,18 +154,18 @@ def is_proven(
     most: float,
     sides: tuple[bool, bool],
 ) -> bool:
-    """Whether a piece next to a long ramp has constant speed.
+    """Return whether a piece next to a long ramp has constant speed.
 
     Parameters
     ----------
     readings
-        Of the record.
+        Readings of the record.
     begin, end
         The piece [s].
     most
         Change of speed that a plateau may show [m/s].
     sides
-        Whether a ramp lies before and after the piece.
+        Whether a ramp is before and after the piece.
     """
     change, error = change_along(readings, begin, end)
     if not change + limits.MIN_ERRORS_WITHIN_DRIFT.value * error <= most:
@@ -176,7 +176,7 @@ def is_proven(
 def _is_level(
     readings: Readings, begin: float, end: float, sides: tuple[bool, bool], beside: float
 ) -> bool:
-    """Whether a level with flanks fits better than one smooth motion or one reversal."""
+    """Return whether a level with flanks fits better than one smooth motion or one reversal."""
     size = beside * (end - begin)
     window = readings.within(begin - sides[0] * size, end + sides[1] * size)
     time, values = window.time, window.values - window.values.mean()
@@ -197,7 +197,7 @@ def _is_level(
         others += misfits
         best = int(np.argmin([fit.variance for fit, _ in misfits]))
         turns, width = turns[best] + width * np.linspace(-1, 1, 11), width / 5
-    # one count of readings for all: that of the motion that leaves least
+    # the number of readings for all is that of the best-fitting motion
     count = min(levels + others, key=lambda misfit: misfit[0].variance)[0].samples
 
     def schwarz(fits: list[tuple[Fit, int]]) -> float:
@@ -213,7 +213,7 @@ def _is_level(
 def _levels(
     place: np.ndarray, corners: tuple[float, float], sides: tuple[bool, bool]
 ) -> list[tuple[list[np.ndarray], int]]:
-    """Levels with a line on each side that has a ramp; their corners move a little."""
+    """Return levels with a line on each side that has a ramp, for slightly shifted corners."""
     size = corners[1] - corners[0]
     levels = []
     for before in _END_SHIFTS if sides[0] else (None,):
@@ -228,10 +228,10 @@ def _levels(
 
 
 def _turn(place: np.ndarray, at: float) -> list[np.ndarray]:
-    """Two lines that meet."""
+    """Return the basis of two lines that meet."""
     return [np.ones(place.size), place, np.abs(place - at)]
 
 
 def _motions(place: np.ndarray) -> list[tuple[list[np.ndarray], int]]:
-    """Smooth motions."""
+    """Return smooth motions: polynomials of degree 1 to 4."""
     return [(list(legendre.legvander(place, degree).T), 0) for degree in (1, 2, 3, 4)]

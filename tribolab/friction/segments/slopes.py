@@ -10,30 +10,30 @@ from tribolab.arrays.scratch import room
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.plateaus import quantum
 
-_DIGIT_SAMPLE = 8192  # readings that suffice to find their last digit
-_DIGIT_ROUNDING = 0.01  # of a digit: what arithmetic adds
-_RATE_SAMPLES = 8  # samples on each side that tell the rate
+_DIGIT_SAMPLE = 8192  # readings sufficient to find their last digit
+_DIGIT_ROUNDING = 0.01  # of a digit: rounding by arithmetic
+_RATE_SAMPLES = 8  # samples on each side that determine the rate
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     """Estimate the standard deviation of the position readings [m].
 
-    From their distance to the chord of both neighbours, which a constant speed leaves at zero;
-    no less than rounding to the last digit adds, which a regular pattern of digits hides.
+    From their distance to the chord of both neighbours, which is zero at constant speed. At least
+    the error of rounding to the last digit, which a regular pattern of digits may hide.
     """
     if time.size < 3:
         return 0.0
-    off = np.empty(time.size - 2)  # sorted as a whole: no piece of it at a time
+    off = np.empty(time.size - 2)  # sorted as a whole, not in pieces
     for first, last in pieces(0, off.size):
         off[first:last] = _off_chord(time[first : last + 2], position[first : last + 2])
     noise = float(np.median(off, overwrite_input=True) / 0.6745)
     rounding = digit(position) / np.sqrt(12)
-    # readings that mostly repeat have no median distance
+    # the median distance of mostly repeated readings is zero
     return max(noise, rounding) or quantum(position) / np.sqrt(12)
 
 
 def _off_chord(time: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Distance of each reading from the chord of its neighbours, relative to white noise."""
+    """Return each reading's distance from the chord of its neighbours, scaled to white noise."""
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
@@ -41,7 +41,7 @@ def _off_chord(time: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def is_staircase(position: np.ndarray) -> bool:
-    """Whether most readings repeat the one before, so that digits are coarser than the motion."""
+    """Return whether most readings repeat the one before: digits are coarser than the motion."""
     steps = position.size - 1
     still = sum(
         int(np.count_nonzero(np.diff(position[a : b + 1]) == 0)) for a, b in pieces(0, steps)
@@ -66,7 +66,7 @@ def digit(position: np.ndarray) -> float:
     """
     levels = np.unique(position[:: 1 + position.size // _DIGIT_SAMPLE])
     gaps = np.diff(levels)
-    # what differs in the last bits only is one reading
+    # readings that differ only in the last bits are equal
     gaps = gaps[gaps > 1e-9 * np.abs(levels).max(initial=0.0)]
     if gaps.size < limits.MIN_SAMPLES_OF_BLOCK.value - 1:
         return 0.0
@@ -78,10 +78,9 @@ def digit(position: np.ndarray) -> float:
 
 
 def _is_commanded(position: np.ndarray, step: float) -> bool:
-    """Whether a position increases by equal steps or rests, as a set-point does.
+    """Return whether a position increases by equal steps or rests, as a set-point does.
 
-    Readings that are rounded to their last digit stand still now and then in the middle of a
-    motion, or go on by another number of digits.
+    Rounded readings repeat now and then during a motion, or increase by another number of digits.
     """
     moves = others = alone = 0
     for first, last in pieces(0, position.size - 1):
@@ -95,10 +94,10 @@ def _is_commanded(position: np.ndarray, step: float) -> bool:
 
 
 def is_rounding(position: np.ndarray, noise: float) -> bool:
-    """Whether rounding to the last digit explains all the noise of a record.
+    """Return whether rounding to the last digit explains all the noise of a record.
 
-    Readings that move on by less than a digit or two a sample repeat a pattern, whose blocks
-    have less noise at some speeds, and more at others, than rounding has on the whole.
+    Readings that change by less than a digit or two per sample repeat a pattern, whose blocks have
+    less noise than rounding at some speeds, and more at others.
 
     Parameters
     ----------
@@ -110,7 +109,7 @@ def is_rounding(position: np.ndarray, noise: float) -> bool:
     return is_staircase(position) or noise <= limits.MAX_NOISE_OF_ROUNDING.value * digit(position)
 
 
-def _far(time: np.ndarray, position: np.ndarray) -> np.ndarray:
+def _find_jumps(time: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Return the samples after which the position jumps far away."""
     least = limits.MIN_JUMP.value * float(np.ptp(position)) if position.size else 0.0
     least = max(least, limits.MIN_DIGITS_OF_JUMP.value * quantum(position))
@@ -136,14 +135,14 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     Returns
     -------
     tuple
-        The position without its jumps [m], and the samples before which they stood.
+        The position without its jumps [m], and the samples after each jump.
 
     Notes
     -----
-    A jump is a single difference of `MIN_JUMP` of the range or more that stands off from the rates
-    around it; it is replaced by what their median would give.
+    A jump is a single difference of at least `MIN_JUMP` of the range that deviates from the rates
+    around it; it is replaced by the difference that their median gives.
     """
-    far = _far(time, position)
+    far = _find_jumps(time, position)
     if far.size == 0 or position.size <= 2 * _RATE_SAMPLES:
         return position, np.zeros(0, dtype=int)
     near = far[:, None] + np.concatenate(
@@ -175,7 +174,7 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
 
 
 def _rates(time: np.ndarray, position: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Rate from some samples to the next ones; NaN where no time passes."""
+    """Return the rate from some samples to the next ones; NaN if no time passes."""
     spacing = time[at + 1] - time[at]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(spacing > 0, (position[at + 1] - position[at]) / spacing, np.nan)
@@ -184,7 +183,7 @@ def _rates(time: np.ndarray, position: np.ndarray, at: np.ndarray) -> np.ndarray
 def block_slopes(
     time: np.ndarray, position: np.ndarray, size: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mean time and least-squares slope of each block of `size` samples."""
+    """Return mean time and least-squares slope of each block of `size` samples."""
     count = time.size // size
     middle, slope = np.empty(count), np.empty(count)
     for first, last in pieces(0, count, block=size):
@@ -196,11 +195,11 @@ def block_slopes(
 
 
 def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """As `block_slopes`, of blocks in rows."""
+    """Return mean time and slope of blocks in rows, as `block_slopes`."""
     middle = t.mean(axis=1, keepdims=True)
     t, x = t - middle, x - x.mean(axis=1, keepdims=True)
     slope = (t * x).sum(axis=1) / (t * t).sum(axis=1)
-    # one reweighting: readings that stand off (a stale or a wild one) are left out
+    # one reweighting: outliers (stale or wild readings) are omitted
     rest = x - slope[:, None] * t
     limit = 4 * np.median(np.abs(rest), axis=1, keepdims=True) / 0.6745
     weight = (np.abs(rest) <= np.maximum(limit, 1e-300)).astype(float)
@@ -215,9 +214,9 @@ def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def velocity_blocks(
     time: np.ndarray, position: np.ndarray, least: int = limits.MIN_SAMPLES_OF_BLOCK.value
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """Velocity on blocks just long enough for a slope good to a few percent.
+    """Return the velocity of blocks just long enough for a slope accurate to a few percent.
 
-    Good at the speeds at which most of the way is covered: what is slower is looked at again.
+    Accurate at the speeds that cover most of the distance; slower motion is examined again.
 
     Parameters
     ----------
@@ -229,8 +228,8 @@ def velocity_blocks(
     Returns
     -------
     tuple
-        Mean time of each block [s], velocity [m/s], samples in a block, and the usual error of
-        a block's velocity [m/s].
+        Mean time of each block [s], velocity [m/s], samples per block, and the usual error of a
+        block's velocity [m/s].
     """
     noise = position_noise(time, position)
     size, error = least, 0.0
@@ -238,14 +237,14 @@ def velocity_blocks(
         t, v = block_slopes(time, position, size)
         spacing = median(np.diff(t)) / size if t.size > 1 else np.inf
         error = float(noise * np.sqrt(12 / size) / (size * spacing)) if spacing > 0 else 0.0
-        if size * 64 > time.size or _fine(np.abs(v), error):
+        if size * 64 > time.size or _is_accurate(np.abs(v), error):
             return t, v, size, error
         size *= 2
 
 
-def _fine(speed: np.ndarray, error: float) -> bool:
-    """Whether the velocities of the blocks are accurate over most of the distance."""
-    sure = np.maximum(speed - 3 * error, 0.0)  # what noise covers is no way
+def _is_accurate(speed: np.ndarray, error: float) -> bool:
+    """Return whether the velocities of the blocks are accurate over most of the distance."""
+    sure = np.maximum(speed - 3 * error, 0.0)  # motion within the noise does not count as distance
     if not sure.any():
         return False
     order = np.argsort(speed)
@@ -255,7 +254,7 @@ def _fine(speed: np.ndarray, error: float) -> bool:
 
 
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
-    """Offset and slope of the straight line through an interval, without single outliers."""
+    """Return offset and slope of the straight line through an interval, without single outliers."""
     t0 = time.mean()
     keep = np.ones(time.size, dtype=bool)
     offset = slope = 0.0

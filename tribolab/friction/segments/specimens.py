@@ -15,9 +15,9 @@ def begins_of_specimens(run: xr.Dataset) -> np.ndarray:
     Parameters
     ----------
     run
-        With ``position`` and ``step`` (time). A specimen begins where the step is another one and
-        the position stands elsewhere without having gone there; a stage that stops and goes on, or
-        a counter that wraps within a step, begins none.
+        With ``position`` and ``step`` (time). A specimen begins where the step changes and the
+        position jumps; a stage that stops and continues, or a counter that wraps within a step,
+        does not begin a specimen.
     """
     if "position" not in run or "step" not in run:
         return np.zeros(0)
@@ -28,14 +28,14 @@ def begins_of_specimens(run: xr.Dataset) -> np.ndarray:
 
 
 def apart(run: xr.Dataset, stretches: list[Stretch]) -> list[Stretch]:
-    """Cut intervals at the start of another specimen.
+    """Return intervals cut at the start of another specimen.
 
     Parameters
     ----------
     run
         The run.
     stretches
-        In the order of time.
+        Intervals in temporal order.
     """
     begins = begins_of_specimens(run)
     if not begins.size:

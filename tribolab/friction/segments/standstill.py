@@ -18,7 +18,7 @@ from tribolab.friction.segments.limits import (
 from tribolab.friction.segments.plateaus import quantum
 from tribolab.friction.segments.stretches import Stretch, track
 
-_BLOCK_COUNTS = (32, 16, 8)  # of a segment: as many as the noise of the position allows
+_BLOCK_COUNTS = (32, 16, 8)  # blocks per segment: as many as the noise of the position allows
 
 
 def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list[Stretch], float]:
@@ -27,16 +27,16 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
     Parameters
     ----------
     run
-        With ``sliding_velocity``; without ``position`` no stretch changes.
+        With ``sliding_velocity``; without ``position`` no interval changes.
     stretches
-        From the recorded velocity. A standstill in the first or last tenth of one does not count: a
-        stage needs time to start.
+        Intervals from the recorded velocity. A standstill in their first or last tenth does not
+        count: a stage needs time to start.
 
     Notes
     -----
     A velocity without noise is often a set-point. A position that agrees with it for most of the
     time, and stops for a part of a segment, shows that the stage stopped. A position that never
-    agrees is another quantity, or has another unit, and shows nothing.
+    agrees is another quantity, or has another unit, and is ignored.
     """
     if "position" not in run or not anywhere(np.isfinite, run["position"].values):
         return stretches, 0.0
@@ -59,9 +59,9 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
         agreeing += lasted * float(np.mean(np.abs(share - 1) < MAX_SPEED_MISFIT.value))
         begin, end = _standing(share)
         stands += lasted * float((end - begin).sum()) / share.size
-        # a block at either end of a standstill may be half of it
+        # a block at either end of a standstill may be half moving
         begin, end = np.maximum(begin - 1, 0) * size, (end + 1) * size
-        result += _cut(stretch, time[first:last], begin, end)
+        result += _split(stretch, time[first:last], begin, end)
     return (result, stands) if agreeing > 0.5 * examined else (stretches, 0.0)
 
 
@@ -90,7 +90,7 @@ def _standing(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return begin[long], end[long]
 
 
-def _cut(stretch: Stretch, time: np.ndarray, begin: np.ndarray, end: np.ndarray) -> list[Stretch]:
+def _split(stretch: Stretch, time: np.ndarray, begin: np.ndarray, end: np.ndarray) -> list[Stretch]:
     """Return an interval in sliding parts and, from sample to sample, parts at rest."""
     result, at = [], 0
     ends = [*time.tolist(), stretch.stop]

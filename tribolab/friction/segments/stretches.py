@@ -17,7 +17,7 @@ from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, he
 from tribolab.friction.segments.turns import strokes_within
 from tribolab.friction.time_weights import without_gaps
 
-_INTERVALS_OF_GAP = 4  # intervals on each side of one that tell whether it is a gap
+_INTERVALS_OF_GAP = 4  # intervals on each side of a pause that are compared with it
 
 
 class Stretch(NamedTuple):
@@ -40,13 +40,13 @@ def velocity_source(run: xr.Dataset) -> str:
     clocked = run.attrs.get("time_source") != "row number"
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
         if name == "position" and stated and not clocked:
-            continue  # rows that are counted as seconds make no speed of it
+            continue  # a speed is not derived from rows counted as seconds
         if name in run and anywhere(np.isfinite, run[name].values):
             return source
     if "step" in run:
         return "step"
     if "sliding_velocity" in run or ("position" in run and (clocked or not stated)):
-        # nothing but NaN: an empty result that says so
+        # only NaN: leads to an empty result with a reason
         return "recorded" if "sliding_velocity" in run else "position"
     if stated:
         return "set speed"
@@ -64,16 +64,16 @@ def velocity_source(run: xr.Dataset) -> str:
 
 
 def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Time and values where the values are numbers."""
+    """Return time and values without values that are not finite."""
     time, values = run["time"].values, np.asarray(run[name].values, dtype=float)
-    if np.isfinite(values.sum()):  # one number says that there is no NaN, without a mask
+    if np.isfinite(values.sum()):  # the sum is finite if all values are
         return time, values
     good = np.isfinite(values)
     return time[good], values[good]
 
 
 def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Time and position, if recorded, joined at resets of the sensor."""
+    """Return time and position, if recorded, joined at resets of the sensor."""
     time, position = finite(run, "position")
     return time, slopes.without_resets(time, position)[0]
 
@@ -96,7 +96,7 @@ def of_points(run: xr.Dataset) -> list[Stretch]:
 def from_velocity(
     run: xr.Dataset, constancy: ConstancyLimits, max_gap: float | None
 ) -> list[Stretch]:
-    """Stretches from the recorded velocity."""
+    """Return the intervals of a run from the recorded velocity."""
     time, velocity = finite(run, "sliding_velocity")
     if time.size < 2:
         return _nothing(run, time.size)
@@ -109,7 +109,7 @@ def from_velocity(
 def from_position(
     run: xr.Dataset, constancy: ConstancyLimits, max_gap: float | None
 ) -> list[Stretch]:
-    """Stretches from the position, by slopes over blocks."""
+    """Return the intervals of a run from the position, by slopes over blocks."""
     time, position = track(run)
     if time.size < 3 * limits.MIN_SAMPLES_OF_BLOCK.value:
         return _nothing(run, time.size)
@@ -118,24 +118,24 @@ def from_position(
     pieces = strokes_within(time, position, pieces, constancy)
     pieces = moving(time, [_with_slope(time, position, p) for p in pieces], constancy)
     if constancy.rest_speed is None:
-        pieces = _getting_somewhere(time, pieces, slopes.position_noise(time, position))
-    share = 0.25  # one straight line on both sides of a pause shows that the speed held
+        pieces = _mark_dwells(time, pieces, slopes.position_noise(time, position))
+    share = 0.25  # a straight line across a pause shows constant speed
     return _in_time(run, time, pieces, constancy, max_gap, share)
 
 
 def _by_slopes(
     time: np.ndarray, position: np.ndarray, constancy: ConstancyLimits, least: int
 ) -> list[VelocityPiece]:
-    """Pieces from slopes over blocks, with longer blocks for slow motion."""
+    """Return pieces from slopes over blocks, with longer blocks for slow motion."""
     t, v, size, error = slopes.velocity_blocks(time, position, least)
     fewest = constancy._replace(min_samples=max(3, constancy.min_samples // size))
-    # digits leave blocks without noise beside such that hold a whole step
+    # blocks within one digit show no noise, next to blocks that contain a whole step
     noise = slopes.position_noise(time, position)
     floor = error if slopes.is_rounding(position, noise) else 0.0
     blocks = locate(t, v, fewest, floor)
     pieces = [p._replace(first=p.first * size, last=p.last * size) for p in blocks]
     pieces[-1] = pieces[-1]._replace(last=time.size)
-    pieces = _kinks(time, position, pieces, size)
+    pieces = _move_borders(time, position, pieces, size)
     if error == 0:
         return pieces
     result: list[VelocityPiece] = []
@@ -157,10 +157,10 @@ def _with_slope(time: np.ndarray, position: np.ndarray, piece: VelocityPiece) ->
     return piece._replace(velocity=slopes.line(time[inside], position[inside])[1])
 
 
-def _getting_somewhere(
+def _mark_dwells(
     time: np.ndarray, pieces: list[VelocityPiece], noise: float
 ) -> list[VelocityPiece]:
-    """Reclassify as rest a motion below the noise of a reading: a dwell between strokes."""
+    """Reclassify as rest a motion smaller than the noise of a reading: a dwell between strokes."""
     return [
         piece._replace(kind="at rest")
         if piece.kind == "constant"
@@ -171,7 +171,7 @@ def _getting_somewhere(
     ]
 
 
-def _kinks(
+def _move_borders(
     time: np.ndarray, position: np.ndarray, pieces: list[VelocityPiece], size: int
 ) -> list[VelocityPiece]:
     """Move the border of two neighbouring plateaus to the intersection of their lines."""
@@ -181,7 +181,7 @@ def _kinks(
         left, right = result[i], result[j]
         if right.first - left.last > 3 * size:
             continue
-        near = 20 * size  # the speed wanders within a plateau: only its end tells where it ends
+        near = 20 * size  # the speed drifts within a plateau: only its end determines the border
         (a, va), (b, vb) = (
             slopes.line(time[first:last], position[first:last])
             for first, last in (
@@ -213,7 +213,7 @@ def _in_time(
     max_gap: float | None,
     share: float,
 ) -> list[Stretch]:
-    """Pieces in run time, split at gaps; a gap is where samples are missing or not numbers."""
+    """Return pieces in run time, split at gaps, where samples are missing or not numbers."""
     result: list[Stretch] = []
     whole = run["time"].values
     if time[0] > whole[0]:
@@ -226,7 +226,7 @@ def _in_time(
             if kind == "constant" and last - first < constancy.min_samples:
                 kind = "too short"
             stop = time[last - 1]
-            if last == piece.last and last < time.size and not _wide(time, last - 1, piece):
+            if last == piece.last and last < time.size and not _is_gap(time, last - 1, piece):
                 stop = time[last]
             result.append(Stretch(float(time[first]), float(stop), kind, piece.velocity))
             if last < piece.last:
@@ -236,8 +236,8 @@ def _in_time(
     return result
 
 
-def _wide(time: np.ndarray, index: int, piece: VelocityPiece) -> bool:
-    """Whether the pause after a sample is much longer than usual in its piece."""
+def _is_gap(time: np.ndarray, index: int, piece: VelocityPiece) -> bool:
+    """Return whether the pause after a sample is much longer than usual in its piece."""
     usual = (time[piece.last - 1] - time[piece.first]) / max(piece.last - piece.first - 1, 1)
     return bool(time[index + 1] - time[index] > 3 * usual)
 
@@ -256,12 +256,12 @@ def _gaps(
     if longest is None:
         usual = float(median(spans)) / step
         longest = max(20 * usual, share * float(inside[-1] - inside[0]))
-    wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
+    wide = np.flatnonzero(spans > longest)  # such a pause can only be there
     parts = []
     for block in wide:
         near = max(int(block) * step - _INTERVALS_OF_GAP, 0)
         steps = np.diff(inside[near : (block + 1) * step + _INTERVALS_OF_GAP + 1])
-        # a slower rate is no gap: it has as long intervals next to it
+        # a slower rate is not a gap: it has equally long intervals next to it
         alone = (steps > without_gaps(steps)) | (max_gap is not None)
         gap = near + np.flatnonzero((steps > longest) & alone)
         parts.append(gap[(gap >= block * step) & (gap < (block + 1) * step)])
@@ -269,7 +269,7 @@ def _gaps(
 
 
 def from_steps(run: xr.Dataset, min_samples: int) -> list[Stretch]:
-    """Each step (or stroke) of the instrument is a segment."""
+    """Return each step (or stroke) of the instrument as a segment."""
     time, step = run["time"].values, run["step"].values
     known = ~np.isnan(step.astype(float))
     edges = np.flatnonzero((step[1:] != step[:-1]) & (known[1:] | known[:-1])) + 1

@@ -20,17 +20,17 @@ class Strokes(NamedTuple):
     Parameters
     ----------
     first
-        Number of the first sample of each stroke, and of the sample after the last (stroke + 1).
+        Index of the first sample of each stroke, and of the sample after the last (stroke + 1).
     way
         +1 or -1 (stroke).
     length
         Distance between the turns [m] (stroke).
     place
-        Share of its stroke that each sample has gone (time); NaN outside of whole strokes.
+        Share of the stroke covered at each sample (time); NaN outside of whole strokes.
     usual
-        Whether a stroke is as long as strokes are, and not a twitch at a turn (stroke).
+        Whether a stroke has the usual length, and is not a small motion at a turn (stroke).
     paused
-        Whether much of a stroke was not recorded, so that it may be parts of two (stroke).
+        Whether a stroke has a long unrecorded part, and may be parts of two (stroke).
     """
 
     first: np.ndarray
@@ -59,8 +59,8 @@ def find_strokes(run: xr.Dataset) -> Strokes:
     Returns
     -------
     Strokes
-        From turn to turn: of the position, where it has come back by a quarter of its range; else
-        of the velocity, where it has another sign at a fifth of its usual size.
+        From turn to turn: a position turns if it returns by a quarter of its range; a velocity, if
+        its sign changes at more than a fifth of its usual magnitude.
 
     Raises
     ------
@@ -92,9 +92,9 @@ def find_strokes(run: xr.Dataset) -> Strokes:
 
 
 def shuttles(run: xr.Dataset) -> bool:
-    """Whether a run consists of equal strokes whose friction reverses with direction.
+    """Return whether a run consists of equal strokes whose friction reverses with direction.
 
-    As a crank or a shaker drives it: such a run has no plateau of constant speed to be found.
+    Driven by a crank or a shaker, such a run has no plateau of constant speed.
 
     Parameters
     ----------
@@ -120,11 +120,11 @@ def shuttles(run: xr.Dataset) -> bool:
         or median(np.diff(strokes.first)) < limits.MIN_SAMPLES_OF_STROKE.value
     ):
         return False
-    return _turns_with(strokes, run[names[0]].values)
+    return _friction_reverses(strokes, run[names[0]].values)
 
 
-def _turns_with(strokes: Strokes, friction: np.ndarray) -> bool:
-    """Whether friction differs clearly between the two directions."""
+def _friction_reverses(strokes: Strokes, friction: np.ndarray) -> bool:
+    """Return whether friction differs clearly between the two directions."""
     number = strokes.number
     inside = (number >= 0) & (np.abs(strokes.place - 0.5) < 0.25) & np.isfinite(friction)
     count = np.bincount(number[inside], minlength=strokes.way.size)
@@ -139,7 +139,7 @@ def _turns_with(strokes: Strokes, friction: np.ndarray) -> bool:
 
 
 def _paused(time: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """Whether no sample was taken in a quarter of a stroke (stroke)."""
+    """Return whether a quarter of a stroke or more is without samples (stroke)."""
     pause = np.diff(time[first[0] : first[-1] + 1])
     longest = np.maximum.reduceat(pause, first[:-1] - first[0])
     return longest > np.maximum(
@@ -149,14 +149,14 @@ def _paused(time: np.ndarray, first: np.ndarray) -> np.ndarray:
 
 
 def _settings(run: xr.Dataset) -> np.ndarray | None:
-    """Return the number of each sample's step where a crank's steps have their own strokes."""
+    """Return the number of each sample's step if the steps of a crank have strokes of their own."""
     if "stroke_m_of_steps" not in run.attrs or "step" not in run:
         return None
     return np.asarray(run["step"].values)
 
 
 def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Mask of strokes of usual length that lie within one step (stroke)."""
+    """Return a mask of strokes of usual length within one step (stroke)."""
     step = _settings(run)
     if step is None:
         return length > limits.MIN_LENGTH_OF_STROKE.value * median(length)
@@ -172,7 +172,7 @@ def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray
 _Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
-def _filled(run: xr.Dataset, name: str) -> np.ndarray:
+def _fill_gaps(run: xr.Dataset, name: str) -> np.ndarray:
     """Return a signal with its gaps bridged by straight lines."""
     time, values = finite(run, name)
     if time.size == run.sizes["time"]:
@@ -181,7 +181,7 @@ def _filled(run: xr.Dataset, name: str) -> np.ndarray:
 
 
 def _by_position(run: xr.Dataset) -> _Parts:
-    position = _filled(run, "position")
+    position = _fill_gaps(run, "position")
     turn, way = turns_of(position)
     if not way.size:
         return _nothing(position.size)
@@ -195,14 +195,14 @@ def _by_position(run: xr.Dataset) -> _Parts:
 
 
 def _by_velocity(run: xr.Dataset) -> _Parts:
-    time, velocity = run["time"].values, _filled(run, "sliding_velocity")
+    time, velocity = run["time"].values, _fill_gaps(run, "sliding_velocity")
     limit = _limit(run, velocity)
     state = last_side(velocity, -limit, limit)
     change = np.flatnonzero(np.diff(state)) + 1
     change = change[state[change - 1] != 0]
     if change.size < 2:
         return _nothing(velocity.size)
-    # the turn lies where the velocity last had the sign of before
+    # the turn is where the velocity last had its previous sign
     sign = np.where(np.abs(velocity) > EQUAL * limit, np.sign(velocity), 0.0)
     same = np.flatnonzero(sign[:-1] * sign[1:] <= 0) + 1
     turn = np.unique(same[np.clip(np.searchsorted(same, change, side="right") - 1, 0, None)])
@@ -239,20 +239,20 @@ def _nothing(size: int) -> _Parts:
 def middle_parts(
     run: xr.Dataset, share: float
 ) -> tuple[Strokes, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the strokes of a run, and where the middle share of the length of each lies.
+    """Return the strokes of a run, and the position in time of the middle share of each.
 
     Parameters
     ----------
     run
         As for `find_strokes`.
     share
-        Of the length of each stroke, about its middle.
+        Share of the length of each stroke, around its middle.
 
     Returns
     -------
     tuple
         The strokes; time of the first and of the last sample of each middle part [s] (stroke), NaN
-        where it holds none; and the number of its samples (stroke).
+        without samples; and the number of its samples (stroke).
     """
     strokes = find_strokes(run)
     inside = np.flatnonzero(np.abs(strokes.place - 0.5) <= share / 2)

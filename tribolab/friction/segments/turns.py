@@ -7,19 +7,19 @@ import numpy as np
 from tribolab.friction.segments import limits, slopes
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece
 
-EQUAL = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
-_INNER_PARTS = 4  # of the inner part, whose speeds are compared
+EQUAL = 1e-9  # of the range, or of the usual speed: smaller differences count as zero
+_INNER_PARTS = 4  # number of parts of the inner part whose speeds are compared
 
 
 def last_side(values: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:
-    """Side where a signal was last: above `high` (+1) or below `low` (-1); 0 before either.
+    """Return the side where a signal was last: above `high` (+1), below `low` (-1), 0 before.
 
     Parameters
     ----------
     values
         The signal (time).
     low, high
-        Limits in its unit: one for all, or one for each sample.
+        Limits in the signal's unit: one for all, or one for each sample.
     """
     state = np.where(values > high, 1, np.where(values < low, -1, 0))
     place = np.where(state != 0, np.arange(state.size), 0)
@@ -37,13 +37,13 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     tuple
-        (turn) and (turn - 1); empty where there are not two turns. A turn is the farthest point
-        on one side, between comings back by a quarter of the range.
+        (turn) and (turn - 1); empty for fewer than two turns. A turn is the farthest point on one
+        side, between returns by a quarter of the range.
     """
     low, high = np.percentile(position, [1, 99])
     middle, half = (low + high) / 2, (0.5 - limits.MIN_RETURN_OF_TURN.value) * (high - low)
     state = last_side(position, middle - half, middle + half)
-    # the first may be a coming in to the first side; where it began on one, that is no turn
+    # the first change may be an approach to the first side; a start on a side is not a turn
     change = np.flatnonzero(np.diff(state)) + 1
     if change.size < 2 or not high > low:
         return np.empty(0, dtype=int), np.empty(0, dtype=int)
@@ -69,31 +69,31 @@ def strokes_within(
     time, position
         Finite samples [s], [m].
     pieces
-        Of the whole record, in samples of it.
+        Pieces of the whole record, in samples.
     constancy
-        What counts as constant.
+        Limits of constant speed.
 
     Notes
     -----
     A block of slopes may cover a turn or a dwell. Strokes of a few blocks then look like ramps or
-    like rest. Each is examined between its turns, first over the whole record and then within each
-    piece that ramps or rests. The strokes of a crank are not straight and stay ramps.
+    rest. Each is examined between its turns, first over the whole record and then within each ramp
+    or rest. The strokes of a crank are not straight and remain ramps.
     """
     noise = slopes.position_noise(time, position)
     whole = VelocityPiece(0, time.size, "ramp", 0.0, 0.0, 0.0)
     if any(p.kind != "constant" and p.last - p.first >= constancy.min_samples for p in pieces):
-        pieces = _completed(pieces, _strokes_of(time, position, whole, constancy, noise))
+        pieces = _add_strokes(pieces, _strokes_of(time, position, whole, constancy, noise))
     least = limits.MIN_STROKES_OF_STRETCH.value * constancy.min_samples
     result: list[VelocityPiece] = []
     for piece in pieces:
         few = piece.kind == "constant" or piece.last - piece.first < least
         strokes = [] if few else _strokes_of(time, position, piece, constancy, noise)
-        result += _completed([piece], strokes)
+        result += _add_strokes([piece], strokes)
     return result
 
 
-def _completed(pieces: list[VelocityPiece], strokes: list[VelocityPiece]) -> list[VelocityPiece]:
-    """Insert the strokes unless plateaus already cover them."""
+def _add_strokes(pieces: list[VelocityPiece], strokes: list[VelocityPiece]) -> list[VelocityPiece]:
+    """Return the pieces with the strokes inserted, unless plateaus already cover them."""
     if not strokes:
         return pieces
     first, last = (np.array([getattr(p, k) for p in pieces]) for k in ("first", "last"))
@@ -112,7 +112,7 @@ def _completed(pieces: list[VelocityPiece], strokes: list[VelocityPiece]) -> lis
 
     if all(found(stroke) for stroke in strokes):
         return pieces
-    # what is left of each piece between the strokes; a plateau that one of them cuts was none
+    # remainder of each piece between the strokes; a plateau cut by a stroke becomes a ramp
     begins = sorted([p.first for p in pieces] + [p.last for p in strokes])
     ends = sorted([p.last for p in pieces] + [p.first for p in strokes])
     rest: list[VelocityPiece] = []
@@ -134,7 +134,7 @@ def _strokes_of(
     """Return the straight strokes of a piece; empty if most are not straight."""
     part = position[piece.first : piece.last]
     if np.ptp(part) < limits.MIN_STROKE_OVER_NOISE.value * noise:
-        return []  # to and fro is but noise
+        return []  # reversals within the noise
     turn = turns_of(part)[0] + piece.first
     if turn.size < limits.MIN_STROKES_OF_STRETCH.value:
         return []
@@ -156,7 +156,7 @@ def _straight_part(
 ) -> tuple[int, int, float] | None:
     """Return the samples [first, last) and the velocity [m/s] of a stroke without its dwells.
 
-    None where the stroke does not hold its speed.
+    None if the speed of the stroke is not constant.
     """
     low, high = float(position.min()), float(position.max())
     margin = (1 - limits.INNER_PART_OF_STROKE.value) / 2 * (high - low)

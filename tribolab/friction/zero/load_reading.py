@@ -14,10 +14,10 @@ from tribolab.friction.zero.parts import Doubt, ZeroReference
 from tribolab.friction.zero.without_sliding import stretches_of
 from tribolab.friction.zero.words import of_leak, of_retained_load
 
-# a difference that is an error or none: the half width of a uniform one
+# a difference may be an error or real: half width over sigma of a uniform distribution
 WIDTH_OVER_SIGMA = np.sqrt(3)
 _NEAREST_RESTS = 4  # rests that are compared with a segment
-_READING_BLOCKS = 5  # of a reading: their scatter includes slow waves and ramps of the load
+_READING_BLOCKS = 5  # blocks of a reading: their scatter includes slow waves and ramps of the load
 
 
 class LoadReading(NamedTuple):
@@ -52,10 +52,10 @@ def load_reading(
     Notes
     -----
     Each difference d between two readings of one load may be an error of the reading or real. It
-    counts as uniform within +-d, with the standard uncertainty d/sqrt(3). The zero of the cell that
-    rests show may be a load that was retained there, if it is positive. Friction that leaks into
-    the load by a share k changes the reading by k F where sliding starts; the half loop is free of
-    it. A creep of the reading counts from the end of the run that is further away.
+    counts as uniform within +-d, with the standard uncertainty d/sqrt(3). A positive zero of the
+    cell at rests may be a retained load. Cross-talk of a share k of friction changes the load
+    reading by k F when sliding starts; the half loop is free of it. Creep of the reading counts
+    from the farther end of the run.
     """
     nothing = LoadReading(np.zeros(pressed.size), ())
     known = pressed[np.isfinite(pressed) & (pressed > 0)]
@@ -102,7 +102,7 @@ def _leak(
             pressed[i] > 0 and abs(force) > 0 and parts[i].stop - parts[i].start > _READING_BLOCKS
         ):
             continue
-        # a load that wanders while sliding does so between rest and sliding as well
+        # drift of the load while sliding also occurs between rest and sliding
         wanders = _mean_of_blocks(normal[parts[i]])[1] * np.sqrt(_READING_BLOCKS)
         useful = []
         for k in np.argsort(np.abs(middles - starts[i]), kind="stable")[:_NEAREST_RESTS]:
@@ -149,7 +149,7 @@ def _loaded_rest(run: xr.Dataset, part: slice, before: bool, load: float) -> _Re
 def _creep(
     run: xr.Dataset, segments: xr.Dataset, parts: list[slice], pressed: np.ndarray
 ) -> np.ndarray:
-    """Return the error of each segment due to creep of the load reading [N] (segment)."""
+    """Return the uncertainty of each segment due to creep of the load reading [N] (segment)."""
     full = np.array([part.stop - part.start >= 10 * _READING_BLOCKS for part in parts], bool)
     full &= np.isfinite(pressed) & (pressed > 0)
     if not full.any():

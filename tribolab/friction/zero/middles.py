@@ -18,14 +18,13 @@ class Middles(NamedTuple):
     member
         Numbers of the forward and the backward stroke (pair, 2).
     share
-        With which weights their forces make the middle [1] (pair, 2).
+        Weights of their forces in the middle [1] (pair, 2).
     time, value
-        Moment [s] and middle of each loop (pair).
+        Time [s] and middle of each loop (pair).
     slope
         Drift of the zero at each pair, per second (pair).
     ends, part
-        Pairs between which the slope was taken, and the part of it that is believed (pair, 2),
-        (pair).
+        Pairs between which the slope was taken, and the accepted part of it (pair, 2), (pair).
     """
 
     member: np.ndarray
@@ -45,16 +44,16 @@ def middles(
     Parameters
     ----------
     mean, load, sign, pair, time
-        Of each segment: mean force, mean normal force (or one for all), direction, number of the
-        pair (-1 for none), moment [s].
+        Mean force, mean normal force (or one for all), direction, number of the pair (-1 for none)
+        and time [s] of each segment.
 
     Notes
     -----
-    With F_f = mu N_f + Z(t_f) and F_b = -mu N_b + Z(t_b) the sum (F_f N_b + F_b N_f)/(N_f + N_b)
-    is Z at the moment (t_f N_b + t_b N_f)/(N_f + N_b), exactly so for a linear drift: what
-    the load did between the strokes does not pass for an offset. The slope at a pair is that from
-    the pair before to the pair after, no steeper than twice either of the two parts and zero where
-    these differ in sign: a zero that jumps once does not drift.
+    With F_f = mu N_f + Z(t_f) and F_b = -mu N_b + Z(t_b) the sum (F_f N_b + F_b N_f)/(N_f + N_b) is
+    Z at the time (t_f N_b + t_b N_f)/(N_f + N_b), exactly for a linear drift: a change of load
+    between the strokes is not mistaken for an offset. The slope at a pair is that from the pair
+    before to the pair after, no steeper than twice either of the two parts and zero if these differ
+    in sign: a zero that jumps once does not drift.
 
     Examples
     --------
@@ -85,7 +84,7 @@ def middles(
         place = np.arange(known.size)
         low, high = np.maximum(place - 1, 0), np.minimum(place + 1, known.size - 1)
         chord = (m[high] - m[low]) / (t[high] - t[low])
-        if known.size > 2:  # the first and last: what the next step says
+        if known.size > 2:  # the first and last: slope of the adjacent interval
             before[0], after[-1] = step[1], step[-2]
         limit = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
         limited = np.sign(chord) * np.minimum(
@@ -98,7 +97,7 @@ def middles(
 
 
 class StrokeSums(NamedTuple):
-    """Each force without its zero as a sum over strokes: which, and how much (segment, term)."""
+    """Each force without its zero as a sum over strokes: stroke, weight (segment, term)."""
 
     stroke: np.ndarray
     weight: np.ndarray
@@ -107,15 +106,15 @@ class StrokeSums(NamedTuple):
 def interpolated(
     middles: Middles, pair: np.ndarray, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, StrokeSums]:
-    """Zero at each segment from the middles of the loops, drift, and error terms.
+    """Return the zero at each segment from the middles of the loops, its drift, and error terms.
 
     Returns
     -------
     tuple
         Zero of each segment (segment) in the unit u of the middles, its drift [u/s] (segment), and
-        of which strokes each force without its zero consists. A stroke of a pair takes its own
-        loop's middle and slope, as does one before the first or after the last loop; one between
-        two loops the straight line between them.
+        the strokes that contribute to each force without its zero. A stroke of a pair uses the
+        middle and slope of its own loop, a stroke before the first or after the last loop those of
+        that loop; a stroke between two loops uses the straight line between them.
     """
     count = time.size
     known = np.flatnonzero(np.isfinite(middles.value))
@@ -159,14 +158,14 @@ def error_of_rows(
     own
         Standard error of the mean force of each stroke (segment).
     time
-        Moment of each stroke [s] (segment).
+        Time of each stroke [s] (segment).
 
     Notes
     -----
-    The variance of a sum over strokes is that of their own errors, or that of the zero's fast
-    movements (new at every stroke) where those are larger: a stroke that lasts longer than they do
-    shows them in its own error; and that of the zero's walk, <Z(t) Z(t')> = D min(t, t'). Both
-    movements are what the middles show beyond their errors and beyond a common drift.
+    The variance of a sum over strokes includes their own errors, or fast fluctuations of the zero
+    (independent at every stroke) if larger: a long stroke includes them in its own error. It also
+    includes the random walk of the zero, <Z(t) Z(t')> = D min(t, t'). Both are estimated from the
+    scatter of the middles beyond their errors and a common drift.
     """
     error = np.sqrt(((middles.share * own[middles.member]) ** 2).sum(axis=1))
     same = rows.stroke[:, :, None] == rows.stroke[:, None, :]
@@ -179,7 +178,7 @@ def error_of_rows(
     when = when - when.min(axis=1, keepdims=True)
     walk = np.minimum(when[:, :, None], when[:, None, :])
     slow = np.maximum((product * walk).sum(axis=(1, 2)), 0.0)
-    # a common drift is taken out and need not be paid for; of few loops it takes what they tell
+    # with or without a common drift, whichever is smaller: few loops hardly determine a drift
     moved = [
         np.maximum(variance, moves.fast * fast) + moves.rate * slow
         for moves in _movements(middles, error)

@@ -25,7 +25,7 @@ from tribolab.units.quantities import quantity
 
 _FROM_TORQUE = re.compile(r"\s*(?:\w+|\(\w+ - \w+\))\s*/\s*(?:(?P<arm>\w+)|'(?P<length>[^']+)')\s*")
 _WITHOUT_SIGN = "mean of both directions: recorded without sign"
-# offsets that are removed from both strokes of a pair, which are then one observation
+# methods that remove an offset from both strokes of a pair, which then are one observation
 PAIRED = ("half loop", _WITHOUT_SIGN)
 
 
@@ -45,11 +45,11 @@ class Settings:
         Largest relative difference of speed between the two strokes of a pair.
     zero_uncertainty
         Standard uncertainty of the friction signal's zero, in its unit or as text with one, which
-        may be a torque where the force was made from one and an arm; None
-        where only the run's attribute ``<signal>_zero_uncertainty`` may say it.
+        may be a torque if the force was computed from torque and lever arm; None: from the run's
+        attribute ``<signal>_zero_uncertainty``, if any.
     rectified
-        Whether the signal was recorded without sign; None where the run's attribute
-        ``<signal>_rectified`` or the signal itself tells.
+        Whether the signal was recorded without sign; None: from the run's attribute
+        ``<signal>_rectified`` or from the signal itself.
     other_zeros
         Zeros of other runs on the same instrument, in the unit of the signal.
     """
@@ -92,15 +92,15 @@ def zero_of_run(
     parts
         Samples of each trimmed segment.
     mean, error
-        Of the signal over each segment (segment).
+        Mean of the signal over each segment, and its standard error (segment).
     load
-        Mean normal force of each segment [N], or one for all where it is not known (segment).
+        Mean normal force of each segment [N], or one for all if unknown (segment).
     middle
-        Mean moment of the samples of each segment [s] (segment).
+        Mean time of the samples of each segment [s] (segment).
     rests
         Zeros from rests without load.
     settings
-        What is wanted and known.
+        User settings.
 
     Returns
     -------
@@ -115,7 +115,7 @@ def zero_of_run(
     if (direction > 0).any() and (direction < 0).any() and _lost(fold):
         unfold = sign * (1.0 if median_of_known(mean) >= 0 else -1.0)
     if fold.kind != "signed" and settings.offset != "zero load":
-        rests = None  # they read the size of the zero
+        rests = None  # rests read only the magnitude of the zero
     pair = _pairs(segments, settings, rests, stated)
     unit = quantity(name).unit
     strokes = StrokeMeans(
@@ -126,11 +126,11 @@ def zero_of_run(
         speed=segments["sliding_speed"].values,
         time=middle,
         pair=pair,
-        number=_numbers(segments),
+        number=_segment_numbers(segments),
         unit="" if unit == "1" else f" {unit}",
     )
     others = tuple(settings.other_zeros)
-    known = KnownOfZero(rests, stated, others, settings.pair_tolerance, *_read(run, name))
+    known = KnownOfZero(rests, stated, others, settings.pair_tolerance, *_zero_from_file(run, name))
     source = str(run.attrs.get("source", "run"))
     reference = find_reference(strokes, known, settings.offset, fold, source)
     if _lost(fold):
@@ -146,7 +146,7 @@ def _lost(fold: Fold) -> bool:
     return fold.kind in ("rectified", "undecided: alike")
 
 
-def _read(run: xr.Dataset, name: str) -> tuple[float, str]:
+def _zero_from_file(run: xr.Dataset, name: str) -> tuple[float, str]:
     """Return the error of a zero that was removed while reading, and its place."""
     unit = quantity(name).unit
     ending = "" if unit == "1" else f"_{unit}"
@@ -195,7 +195,7 @@ def _arm(run: xr.Dataset, name: str) -> float:
     return arm
 
 
-def _numbers(segments: xr.Dataset) -> np.ndarray:
+def _segment_numbers(segments: xr.Dataset) -> np.ndarray:
     """Return the numbers of the segments in tables, counted from 1 as found."""
     if "segment" in segments.coords:
         return segments["segment"].values + 1
@@ -205,7 +205,7 @@ def _numbers(segments: xr.Dataset) -> np.ndarray:
 def _pairs(
     segments: xr.Dataset, settings: Settings, rests: Zeros | None, stated: float
 ) -> np.ndarray:
-    """Pairs of equal speed, or of any speeds if no other zero is available."""
+    """Return pairs of equal speed, or of any speeds if no other zero is available."""
     pair = pair_strokes(segments, settings.pair_tolerance)
     wanted = settings.offset == "half loop" or (
         settings.offset == "auto" and rests is None and not np.isfinite(stated)
@@ -235,12 +235,12 @@ def _fold(
     if stated is not None:
         return Fold("rectified", "") if stated else SIGNED
     if segments.attrs.get("velocity_source") not in ("recorded", "position"):
-        return SIGNED  # the direction was taken from the force, or there is none
+        return SIGNED  # the direction was derived from the force, or there is none
     rest = float(median(rests.value)) if rests is not None else float("nan")
     normal = run["normal_force"].values if "normal_force" in run and parts else None
     pressed = Pressed(normal, parts, max(0.5, limits.MAX_DRIFT_OF_LOAD_ZERO.value))
     force, speed = run[name].values, segments["sliding_speed"].values
     ways = (direction > 0).any() and (direction < 0).any()
     if not ways and load.max(initial=0.0) > LOADS_DIFFER.value * load.min(initial=np.inf):
-        return SIGNED  # steps of the load take the force to zero and back, too
+        return SIGNED  # load steps also take the force to zero and back
     return folded(ForceTrace(force, pressed, parts, mean, error, direction, rest, speed=speed))

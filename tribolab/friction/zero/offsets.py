@@ -45,8 +45,8 @@ class Wander(NamedTuple):
 def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
     """Estimate the drift of the zero from the offsets of successive pairs of strokes.
 
-    A zero that moves more slowly than a stroke lasts does not show within the stroke, but it
-    falsifies the half loop: the backward stroke comes later than the forward one.
+    A zero that drifts slowly compared with a stroke is not visible within the stroke, but it biases
+    the half loop: the backward stroke is later than the forward one.
 
     Parameters
     ----------
@@ -59,8 +59,8 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
     -------
     Wander
         s^2 and D of <d^2> = e_i^2 + e_{i+1}^2 + s^2 + D dt for the differences d of successive
-        offsets, by weighted moments, each taken one standard error above its estimate; zeros below
-        two pairs. One pair tells nothing, and a single difference is all s^2.
+        offsets, by weighted moments, each taken one standard error above its estimate; zero for
+        fewer than two pairs. A single difference is attributed to s^2.
     """
     known = np.isfinite(offset) & np.isfinite(error)
     offset, variance, time = offset[known], error[known] ** 2, time[known]
@@ -71,20 +71,20 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
     excess = np.diff(offset) ** 2 - noise
     if offset.size == 2:
         return Wander(max(0.0, float(excess[0])), 0.0)
-    from scipy import optimize  # not before it is needed: it takes a fifth of a second to load
+    from scipy import optimize  # imported late: it takes a fifth of a second to load
 
     scale = apart.mean()
     parts = np.stack([np.ones(apart.size), apart / scale], axis=1)
-    # the weights depend on what is sought; this settles in a few rounds. They begin equal: steps
-    # with a small error of their own would else outvote one that no error explains
+    # the weights depend on the result; a few iterations converge. They begin equal: steps with a
+    # small error of their own would otherwise dominate a step that no error explains
     expected = np.full(apart.size, np.max(excess + noise) + noise.max())
-    if not expected[0] > 0:  # made without noise: nothing differs
+    if not expected[0] > 0:  # simulated without noise: no differences
         return Wander(0.0, 0.0)
     for _ in range(30):
         weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-150)
         variances, _ = optimize.nnls(parts * weight[:, None], excess * weight)
         expected = noise + parts @ variances
-    # so few squares tell a variance poorly: one standard error above it, as Student's t would; each
-    # with the other held, because even spacing does not tell them apart
+    # few squares determine a variance poorly: one standard error above it, as Student's t would;
+    # each with the other fixed, because even spacing does not separate them
     variances = variances + np.sqrt(2 / ((parts * weight[:, None]) ** 2).sum(axis=0))
     return Wander(float(variances[0]), float(variances[1] / scale))

@@ -20,7 +20,7 @@ class StrokeMeans:
     mean, error
         Mean force and its standard error, in the unit u of the signal.
     load
-        Mean normal force [N], or one for all where it is not known.
+        Mean normal force [N], or one for all if unknown.
     sign
         Direction.
     speed, time
@@ -28,7 +28,7 @@ class StrokeMeans:
     pair
         Number of the pair, -1 for none.
     number
-        What each segment is called.
+        Displayed number of each segment.
     unit
         The unit u, as text that follows a number.
     """
@@ -58,15 +58,15 @@ class KnownOfZero:
     rests
         Zeros from rests without load, of a signal that has its sign.
     stated
-        Standard uncertainty of a zero that was set to zero, as somebody stated [u], or NaN.
+        Stated standard uncertainty of a signal whose zero was set [u], or NaN.
     others
         Zeros of other runs on the same instrument [u].
     tolerance
-        Relative difference of speed up to which somebody says that friction is alike.
+        Relative difference of speed up to which friction is stated to be equal.
     read
-        Standard error of a zero that was read at one place of the file, and taken off [u].
+        Standard error of a zero that was read at one place of the file and subtracted [u].
     read_from
-        Where that was.
+        Place of that zero in the file.
     """
 
     rests: Zeros | None = None
@@ -101,15 +101,15 @@ class ZeroReference:
     error
         Function: own errors of the strokes -> errors of their forces without the zero (segment).
     zero_from
-        What it rests on, in words (segment).
+        Source of the zero, in words (segment).
     half_loop
-        Half the loop of each stroke's pair, its zero's drift taken out [u]; NaN without a pair.
+        Half loop of each stroke's pair, without the drift of the zero [u]; NaN without a pair.
     method
         One word for all: "half loop", "zero load", "stated", "other runs", "none: ...".
     doubts
-        What is not sure.
+        Doubts about the zero.
     stated
-        Standard uncertainty of a zero that was stated, in every error [u]; NaN for none.
+        Stated standard uncertainty of the zero, included in every error [u]; NaN for none.
     """
 
     value: np.ndarray

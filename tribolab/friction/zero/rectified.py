@@ -17,16 +17,16 @@ _PERCENTILE_WIDTH = float(2 * special.ndtri(0.95))
 
 
 class Pressed:
-    """Whether the surfaces are pressed together; the usual load is looked up when first asked for.
+    """Contact under load; the usual load is computed at the first use.
 
     Parameters
     ----------
     normal
-        Normal force (time); None where it is not known, and the surfaces count as pressed.
+        Normal force (time); if None, contact is assumed.
     parts
         Samples of each trimmed segment.
     share
-        Of the usual load, from which on they are.
+        Share of the usual load above which surfaces are in contact.
     """
 
     def __init__(self, normal: np.ndarray | None, parts: list[slice], share: float) -> None:
@@ -34,7 +34,7 @@ class Pressed:
 
     @cached_property
     def _least(self) -> float:
-        assert self._normal is not None  # `within` asks
+        assert self._normal is not None  # checked by `within`
         loads = np.empty(sum(self._normal[part].size for part in self._parts))
         end = 0
         for part in one_by_one(self._parts):
@@ -43,7 +43,7 @@ class Pressed:
         return self._share * float(np.nanmedian(loads, overwrite_input=True))
 
     def within(self, part: slice) -> np.ndarray:
-        """Return which samples of a stretch are pressed."""
+        """Return a mask of the samples of an interval under load."""
         if self._normal is None:
             return np.ones(len(range(*part.indices(part.stop))), dtype=bool)
         return np.abs(self._normal[part]) > self._least
@@ -57,9 +57,9 @@ class ForceTrace(NamedTuple):
     force
         (time)
     loaded
-        When the surfaces are pressed together.
+        Contact under load.
     parts
-        Samples of each trimmed segment, in the order of time.
+        Samples of each trimmed segment, in temporal order.
     mean, error
         Mean force of each segment and its standard error (segment).
     sign
@@ -67,9 +67,9 @@ class ForceTrace(NamedTuple):
     rest
         Reading of the force in rests without load, NaN without one.
     turned
-        By what the force is multiplied.
+        Factor applied to the force.
     speed
-        [m/s] Speed of each segment (segment), if it is known.
+        Speed of each segment [m/s] (segment), if known.
     """
 
     force: np.ndarray
@@ -83,16 +83,16 @@ class ForceTrace(NamedTuple):
     speed: np.ndarray | None = None
 
     def within(self, part: slice) -> np.ndarray:
-        """Return the finite readings of a stretch."""
+        """Return the finite readings of an interval."""
         force = self.turned * self.force[part]
         return force[np.isfinite(force)]
 
     def is_below(self, part: slice) -> bool:
-        """Whether all readings of a stretch are below zero."""
+        """Return whether all readings of an interval are below zero."""
         return bool(np.nanmax(self.turned * self.force[part]) < 0)
 
     def alike(self, number: int) -> bool:
-        """Whether a segment and the next may be strokes to and fro: at one speed."""
+        """Return whether a segment and the next may be opposite strokes: equal speed."""
         if self.speed is None:
             return True
         slow, fast = sorted(np.abs(self.speed[number : number + 2]).tolist())
@@ -110,7 +110,7 @@ class Fold(NamedTuple):
 
     kind: str
     why: str
-    seen: bool = False  # that the force passes through its middle, by several readings at a turn
+    seen: bool = False  # several readings show the force passing its middle
 
 
 SIGNED = Fold("signed", "")
@@ -127,16 +127,16 @@ def folded(trace: ForceTrace) -> Fold:
     Returns
     -------
     Fold
-        "signed" where the force changes its sign with the direction, and where it does not, but
-        goes from one level straight to the other: then a large offset is real. "rectified" where it
-        goes to zero and back at the reversals, or rests without load show its zero beside the
-        strokes instead of between them. "undecided" where neither is to be seen.
+        "signed" if the force changes sign with the direction, or goes from one level straight to
+        the other without a change of sign: then a large offset is real. "rectified" if it goes to
+        zero and back at the reversals, or if unloaded rests show its zero outside the levels of the
+        strokes instead of between them. Else "undecided".
 
     Notes
     -----
     A force F = |s mu N + Z| has the levels mu N + Z and mu N - Z in the two directions, and an
-    offset Z > mu N gives Z + mu N and Z - mu N: the half sum of the one is the half difference
-    of the other. The levels alone do not tell; the way between them does.
+    offset Z > mu N gives Z + mu N and Z - mu N: the half sum of one is the half difference of the
+    other. The levels alone cannot distinguish them; the transition between them can.
 
     Examples
     --------
@@ -155,7 +155,7 @@ def folded(trace: ForceTrace) -> Fold:
         return SIGNED
     turned = 1.0 if median_of_known(trace.mean) >= 0 else -1.0
     trace = trace._replace(turned=turned, mean=turned * trace.mean, rest=turned * trace.rest)
-    # a stroke below zero, beyond its error or with all of its readings, has a sign
+    # a stroke below zero, by its mean beyond its error or by all readings, has a sign
     if (trace.mean[known] < -3 * np.nan_to_num(trace.error[known])).any():
         return SIGNED
     if any(trace.is_below(trace.parts[i]) for i in one_by_one(np.flatnonzero(known))):
@@ -166,7 +166,7 @@ def folded(trace: ForceTrace) -> Fold:
 
 
 def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
-    """Decide for recorded directions and a force of one sign."""
+    """Return the decision for recorded directions and a force of one sign."""
     forward, backward = (
         np.flatnonzero(known & (trace.sign * direction > 0)) for direction in (1, -1)
     )
@@ -202,11 +202,11 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
 
 
 def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
-    """Share of turns that dip to zero, go below both levels, go straight, clearly; their number.
+    """Return shares of turns that dip, pass below, go straight, clearly straight; their number.
 
-    "Straight" is a turn with readings between the two levels, beyond their noise, and none below
-    them, where these are apart; where they are not, one of at least ten readings. "Clearly" is
-    straight by several readings.
+    A turn is "straight" if it has readings between the two levels, beyond their noise, and none
+    below them; if the levels overlap, at least ten readings. "Clearly straight" requires several
+    readings.
     """
     dips, below, straight, clear, seen = 0, 0, 0, 0, 0
     for i in one_by_one(range(len(trace.parts) - 1)):
@@ -231,7 +231,7 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
         ):
             below += 1
         elif top < bottom:
-            # farther from either level than the noise of so many readings reaches
+            # farther from either level than the largest noise among so many readings
             far = _noise_reaches(turn.size) / _PERCENTILE_WIDTH
             above = (low + top) / 2 + far * (top - low)
             beneath = (bottom + highest) / 2 - far * (highest - bottom)
@@ -246,12 +246,12 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
 
 
 def _noise_reaches(count: int) -> float:
-    """Return the standard deviations that the largest of so many readings exceeds in a tenth."""
+    """Return the standard deviations that the largest of `count` readings exceeds by chance."""
     return float(special.ndtri(1 - limits.NOISE_PASSES.value / count))
 
 
 def _one_way(trace: ForceTrace) -> Fold:
-    """Decide without recorded direction, for a force that touches zero at the reversals."""
+    """Return the decision without recorded direction, if a force touches zero at the reversals."""
     if len(trace.parts) < 2 or anywhere(lambda part: _negative(trace.turned * part), trace.force):
         return SIGNED
     level = float(median_of_known(trace.mean))
@@ -266,7 +266,7 @@ def _one_way(trace: ForceTrace) -> Fold:
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
-    # what starts anew at another speed stands still first, and turns round no more than before
+    # a start at another speed after a standstill does not reverse
     turns = (i for i in range(len(trace.parts) - 1) if trace.alike(i))
     stops = (_touches(trace, i) for i in turns)
     touched = [touches for touches in stops if touches is not None]
@@ -285,13 +285,13 @@ def _negative(force: np.ndarray) -> np.ndarray:
 
 
 def _touches(trace: ForceTrace, number: int) -> bool | None:
-    """Whether the force reaches zero between two strokes, within noise and resolution."""
+    """Return whether the force reaches zero between two strokes, within noise and resolution."""
     turn, stroke = trace.between(number), trace.within(trace.parts[number])
     if turn.size < 3 or stroke.size < 3:
         return None
     lowest = int(np.argmin(turn))
-    # of four steps around it a V has three that are large, and a flat stop two at most
+    # of the four steps around the minimum a V has three large ones, a flat stop at most two
     steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
-    # differences between neighbours: a wave in the stroke is no noise
+    # differences between neighbours: slow waves in the stroke are not noise
     noise = median(np.abs(np.diff(stroke))) / 0.954
     return bool(turn[lowest] < max(limits.MAX_ERRORS_OF_TOUCH.value * noise, steps[1]))

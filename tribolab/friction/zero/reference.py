@@ -27,28 +27,28 @@ def find_reference(
     Parameters
     ----------
     strokes
-        Mean force of each segment; of a force that lost its sign, with the sign put back.
+        Mean force of each segment, with the sign restored if it was lost.
     known
-        What else is known.
+        Other information on the zero.
     wanted
         "auto", "half loop", "zero load" or "none".
     fold
         Whether the sign was lost.
     name
-        What the run is called in errors.
+        Name of the run in errors.
 
     Returns
     -------
     ZeroReference
-        With "auto": the middles of the loops where strokes pair; rests without load where they
-        do not, or where they contradict the middles; else a stated uncertainty of the zero; else
-        a zero that was read at one place, which is in doubt; else the zeros of other runs; else
-        nothing, and that is a doubt.
+        With "auto": the middles of the loops if strokes pair; unloaded rests if strokes do not
+        pair, or if rests contradict the middles; else a stated uncertainty of the zero; else a zero
+        that was read at one place, with a doubt; else the zeros of other runs; else none, with a
+        doubt.
 
     Raises
     ------
     AnalysisError
-        If the zero that is wanted cannot be had.
+        If the requested zero cannot be determined.
     """
     loops = middles(strokes.mean, strokes.load, strokes.sign, strokes.pair, strokes.time)
     if loops is not None and not np.isfinite(loops.value).any():
@@ -92,10 +92,10 @@ def find_reference(
 def _turned(strokes: StrokeMeans, rests: Zeros | None, loops: Middles) -> Middles:
     """Return the middles of the loops corrected for tilt, if they then agree better.
 
-    Through a tilt the load reads less one way and more the other, in proportion to friction, and
-    middles that are weighed with such loads go with friction: they would pass for a zero that
-    moves. Rests without load tell the tilt. A cross-talk that moves the middles alike leaves the
-    loads; so the loads count that let the middles agree better.
+    With a tilt the load reads less in one direction and more in the other, in proportion to
+    friction. Middles weighted with such loads change with friction, like a drifting zero. Unloaded
+    rests determine the tilt. Cross-talk shifts the middles alike but not the loads; so the loads
+    with the better agreement of the middles are used.
     """
     if rests is None or not np.isfinite(loops.value).sum() > 1:
         return loops
@@ -155,7 +155,7 @@ def _from_rests(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroR
 
 
 def _from_loops(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> ZeroReference:
-    """Zeros from the middles of the loops; strokes without a partner use rests, if any."""
+    """Return zeros from the middles of the loops; strokes without a partner use rests, if any."""
     good = np.isfinite(loops.value)
     pair = np.where((strokes.pair >= 0) & good[strokes.pair.clip(0)], strokes.pair, -1)
     paired = pair >= 0
@@ -191,9 +191,9 @@ def _checked(
 ) -> ZeroReference:
     """Compare the middles of the loops with an independent zero.
 
-    Where the two differ by more than their errors and by more than `MAX_ASYMMETRY` of friction,
-    friction depends on direction, or the load tilts the zero: the other zero is used, and that is
-    a doubt. Where they differ by less, the difference is carried in the error.
+    If the two differ by more than their errors and by more than `MAX_ASYMMETRY` of friction,
+    friction depends on direction, or the load tilts the zero: the other zero is used, with a doubt.
+    A smaller difference is included in the error.
     """
     if known.rests is not None:
         other = _from_rests(strokes, known, known.rests)
@@ -277,7 +277,7 @@ def _ambiguous(
 
 
 def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroReference:
-    """Zero from outside the run: stated, from other runs, or none."""
+    """Return the zero from outside the run: stated, from other runs, or none."""
     if np.isfinite(known.stated):
         words = f"stated: zero within {known.stated:.3g}{strokes.unit}"
         if known.read_from:
@@ -299,7 +299,7 @@ def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
         return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
     others = np.asarray(known.others, float)
     if others.size > 1 and fold.kind == "signed":
-        # of so few, the next one scatters as Student's t with size - 1 degrees of freedom
+        # for few runs, the next one scatters as Student's t with size - 1 degrees of freedom
         few = (
             np.sqrt((1 + 1 / others.size) * max((others.size - 1) / (others.size - 3), 1.0))
             if (others.size > 3)

@@ -11,7 +11,7 @@ from tribolab.arrays.medians import median
 from tribolab.friction.statistics import NORMAL, estimates_of
 from tribolab.friction.zero import limits
 
-_REST_BINS = 100  # in a stretch of which a part may be without load
+_REST_BINS = 100  # in an interval that may be partly without load
 
 
 class Zeros(NamedTuple):
@@ -31,10 +31,10 @@ class Zeros(NamedTuple):
 
         Notes
         -----
-        Between two rests on the straight line. Where the zero changed by d between them, at a
-        part u of the way, its error holds d^2 u (1 - u)/3: the variance of a step at an unknown
-        moment is d^2 u (1 - u), and of a steady drift nothing; what is known is neither. Before
-        the first rest and after the last the zero stays as it was there.
+        Linear interpolation between two rests. If the zero changed by d between them, the variance
+        at a share u of the interval includes d^2 u (1 - u)/3: for a step at an unknown time it
+        would be d^2 u (1 - u), for a steady drift zero, and either is possible. Before the first
+        and after the last rest the zero is constant.
 
         Examples
         --------
@@ -65,7 +65,7 @@ class Zeros(NamedTuple):
         return np.where(inside, (self.value[last] - self.value[first]) / apart, 0.0)
 
     def around(self, time: np.ndarray) -> np.ndarray:
-        """Return which times lie between two rests."""
+        """Return a mask of the times between two rests."""
         return (time > self.time[0]) & (time < self.time[-1])
 
 
@@ -86,23 +86,22 @@ class Rests(NamedTuple):
 
 
 def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
-    """Zeros of the friction force and of the normal force from unloaded rests.
+    """Return zeros of the friction force and of the normal force from unloaded rests.
 
     Parameters
     ----------
     run, segments
-        The run and its segments, whose omitted stretches say where it was at rest.
+        The run and its segments, whose omitted intervals include the rests.
     load
         Usual normal force of the segments [N].
 
     Returns
     -------
     Rests
-        Zeros of the friction force and of the normal force, in the order of time; None where no
-        rest tells them, nor a stretch without load that moves, in whatever way. A rest reads less
-        than a tenth of the load, and no more than the lowest one by its noise, unless the zero
-        drifts: then the load of the strokes drifts with it. Rests that read more may be in partial
-        contact.
+        Zeros of the friction force and of the normal force, in temporal order; None without an
+        unloaded rest or unloaded motion. A rest reads less than a tenth of the load, and exceeds
+        the lowest rest by no more than noise, unless the zero drifts: then the load of the strokes
+        drifts, too. Rests that read more may be in partial contact.
     """
     rests = _resting(run, segments, load)
     if rests is None:
@@ -110,10 +109,10 @@ def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
     time, normal, intervals = rests
     friction = run["friction_force"].values if "friction_force" in run else None
     levels = _unloaded(time, normal, intervals, load)
-    if not levels:  # what moves without touching shows the zero, too: a torque's with its idling
+    if not levels:  # unloaded motion also shows the zero: idling includes the zero of a torque
         levels = _unloaded(time, normal, _limits(segments, "no load"), load)
-    if not levels:  # a speed that is noise alone, or recorded without sign, is no rest either
-        levels = _bare(time, normal, _limits(segments), load)
+    if not levels:  # a speed that is only noise, or recorded without sign, may also be a rest
+        levels = _unloaded_parts(time, normal, _limits(segments), load)
     levels, partial = _without_partial(time, normal, levels, load, run, segments)
     signals = [normal] if friction is None else [normal, friction]
     told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
@@ -139,14 +138,14 @@ def _without_partial(
     run: xr.Dataset,
     segments: xr.Dataset,
 ) -> tuple[list[np.ndarray], PartialContact | None]:
-    """Drop rests that read more than the lowest one by more than drift."""
+    """Return levels without rests that exceed the lowest one by more than drift, and the latter."""
     if len(levels) < 2:
         return levels, None
     reads = np.array([float(np.mean(normal[level])) for level in levels])
     lowest = int(reads.argmin())
     noise = limits.UNLOADED_NOISE.value * float(np.std(normal[levels[lowest]]))
     near = reads - reads[lowest] <= max(noise, limits.UNLOADED_SHARE.value * load)
-    if near.all() or _drifts(time, normal, levels, reads, segments):
+    if near.all() or _zero_drifts(time, normal, levels, reads, segments):
         return levels, None
     first = int(np.flatnonzero(~near)[0])
     excess = float(np.mean(reads[~near]) - np.mean(reads[near]))
@@ -154,14 +153,14 @@ def _without_partial(
     return [level for level, kept in zip(levels, near, strict=True) if kept], partial
 
 
-def _drifts(
+def _zero_drifts(
     time: np.ndarray,
     normal: np.ndarray,
     levels: list[np.ndarray],
     reads: np.ndarray,
     segments: xr.Dataset,
 ) -> bool:
-    """Whether the load of the strokes changes with the readings at rest, as for a drifting zero."""
+    """Return whether the load of the strokes changes with the readings at rest (drifting zero)."""
     at = np.array([float(time[level].mean()) for level in levels])
     ends = (segments[f"trimmed_{end}"].values for end in ("start", "stop"))
     first, last = (np.searchsorted(time, end) for end in ends)
@@ -171,9 +170,9 @@ def _drifts(
     loads = np.array([np.mean(normal[a:b]) for a, b in zip(first[fine], last[fine], strict=True)])
     middle = (time[first[fine]] + time[last[fine] - 1]) / 2
     if loads.max() > limits.LOADS_DIFFER.value * loads.min():
-        return True  # of several loads: a drift cannot be seen in them
+        return True  # with several loads a drift cannot be detected
     zero = np.interp(middle, at, reads)
-    # what is left of the loads if the zero that the rests read is taken off
+    # scatter of the loads after subtracting the zero read at the rests
     return bool(np.std(loads - zero) < limits.DRIFT_IN_STROKES.value * np.std(loads))
 
 
@@ -193,9 +192,9 @@ def light_rest(
     Parameters
     ----------
     run, segments, load
-        As for `unloaded_rests`, that found none.
+        As for `unloaded_rests`, which found none.
     loads
-        Normal force of each segment [N]: so lightly loaded as one of them, a rest is under load
+        Normal force of each segment [N]: a rest with the load of one of them is under load
         (segment).
     """
     rests = _resting(run, segments, load)
@@ -238,7 +237,8 @@ def _unloaded(
     for start, stop in intervals:
         first, last = np.searchsorted(time, [start, stop])
         level = level_without_load(normal, first, last, load)
-        # more than the zero before may be a light load; less is none, surfaces hardly pull
+        # a higher reading than before may be a light load; a lower one is not: surfaces hardly
+        # attract
         if (
             level.size < limits.MIN_SAMPLES_OF_REST.value
             or np.mean(normal[level]) - before > limits.MAX_DRIFT_OF_LOAD_ZERO.value * load
@@ -249,12 +249,12 @@ def _unloaded(
     return levels
 
 
-def _bare(
+def _unloaded_parts(
     time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
     """Return the samples of intervals, at any motion, that are partly unloaded.
 
-    A load that rises in the same stretch passes through every level: only what stays at one counts.
+    A load that rises in the same interval passes every level: only a constant level is used.
     """
     levels = []
     for level in _unloaded(time, normal, intervals, load):
@@ -282,19 +282,19 @@ def _bare(
 def level_without_load(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
     """Return the samples of a rest at one level far below the load, if any.
 
-    However far below zero: at rest nothing pulls, and what reads so has an offset.
+    A reading may be far below zero: at rest nothing pulls, so that it is an offset.
     """
     light = first + np.flatnonzero(normal[first:last] < limits.MAX_LOAD_OF_BARE_REST.value * load)
     if light.size < limits.MIN_SAMPLES_OF_REST.value:
         return light
-    # the load's ramp begins in the same rest, and may be most of it: where readings lie densest is
-    # the level, and what is far from it is left out
+    # the load ramp may begin in the same rest, and be most of it: the level is where readings are
+    # densest, and distant readings are omitted
     ordered = np.sort(normal[light])
     part = light.size // 4
     width = ordered[part:] - ordered[: light.size - part]
     densest = int(np.argmin(width))
     level = median(ordered[densest : densest + part + 1])
-    # of normal noise the densest quarter is 0.637 standard deviations wide
+    # for normal noise the densest quarter is 0.637 standard deviations wide
     apart = np.abs(normal[light] - level)
     light = light[apart <= 5 * max(float(width[densest]) / 0.637, 1e-4 * load)]
     rest = np.abs(normal[light] - median(normal[light]))

@@ -6,7 +6,7 @@ import numpy as np
 
 from tribolab.friction.zero import limits
 
-_LN_SPEED_OF_NEIGHBOURS = np.log(10)  # loops further apart than a decade say nothing of each other
+_LN_SPEED_OF_NEIGHBOURS = np.log(10)  # loops further apart than a decade are not compared
 
 
 def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool]:
@@ -27,10 +27,10 @@ def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool
 
     Notes
     -----
-    The half loop is the mean of the friction at both speeds, and misses either by half their
+    The half loop is the mean of the friction at both speeds, and differs from each by half their
     difference, |dF/d ln v| |ln v_f/v_b|/2. The slope is the steepest between the loop and its
-    neighbours in speed within a decade, loops of one speed taken together; at least 5 % of
-    friction for a change of speed by e, and 15 % where there is no neighbour.
+    neighbours in speed within a decade, loops of one speed combined; at least 5 % of friction per
+    change of speed by e, and 15 % without a neighbour.
 
     Examples
     --------
@@ -48,7 +48,7 @@ def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool
     steep = np.full(half.size, limits.SPEED_DEPENDENCE.value) * np.abs(half)
     if not known.any() or not (ratio > 0).any():
         return np.nan_to_num(steep * ratio / 2), False
-    # strokes of one speed measure; others only where there are none
+    # strokes of equal speed are used; others only without these
     source = known & (ratio <= limits.MAX_SPEED_DIFFERENCE_OF_LOOP.value)
     measured = bool(
         source.any() and np.ptp(place[source]) > limits.MAX_SPEED_DIFFERENCE_OF_LOOP.value
@@ -64,7 +64,7 @@ def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool
     slope = np.abs(np.diff(level) / np.diff(at)) if at.size > 1 else np.zeros(0)
     near = np.diff(at) <= _LN_SPEED_OF_NEIGHBOURS
     for i in np.flatnonzero(known):
-        # steps of the curve that touch the loop's range of speeds
+        # steps of the curve that overlap the loop's range of speeds
         inside = near & (at[:-1] <= place[i] + ratio[i]) & (at[1:] >= place[i] - ratio[i])
         if inside.any():
             steep[i] = max(

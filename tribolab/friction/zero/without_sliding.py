@@ -16,8 +16,8 @@ from tribolab.friction.zero.rests import Zeros, level_without_load
 class WithoutSliding(NamedTuple):
     """Readings of the friction signal [N], each with its standard error; NaN where unknown.
 
-    `tilt` is what a loaded rest before any sliding reads beyond an unloaded one; `drag` is half the
-    loop of strokes without load.
+    `tilt` is the difference between a loaded rest before any sliding and an unloaded one; `drag` is
+    half the loop of strokes without load.
     """
 
     tilt: tuple[float, float]
@@ -32,7 +32,7 @@ def without_sliding(
     Parameters
     ----------
     run, segments
-        The run and its segments, whose omitted stretches say where it rested or had no load.
+        The run and its segments, whose omitted intervals include rests and unloaded motion.
     rests
         Zeros of the friction force from rests without load.
     load
@@ -81,13 +81,13 @@ def _before_sliding(
 def _without_load(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None, load: float
 ) -> tuple[float, float]:
-    """Return half the loop of strokes without load; of one way, what rests do not read."""
+    """Return half the loop of unloaded strokes; for one direction, the excess over rests."""
     if "sliding_velocity" not in run:
         return float("nan"), float("nan")
-    found: list[tuple[float, float, float, float]] = []  # direction, mean, its error, middle
+    found: list[tuple[float, float, float, float]] = []  # direction, mean, its error, mean time
     time, velocity, force = (run[k].values for k in ("time", "sliding_velocity", "friction_force"))
     for part in stretches_of(run, segments, "no load"):
-        # where the load comes or goes friction does, too
+        # friction also changes while the load is applied or removed
         bare = level_without_load(run["normal_force"].values, part.start, part.stop, load)
         own = force[bare][np.isfinite(force[bare])]
         speed = np.nanmean(velocity[part]) if own.size else 0.0
@@ -118,7 +118,7 @@ class LoadedAndIdle(NamedTuple):
 def of_loaded_and_idle(
     readings: WithoutSliding, zero: ZeroReference, mean: np.ndarray, load: float
 ) -> LoadedAndIdle:
-    """Doubt friction that a loaded rest or unloaded strokes contradict.
+    """Return doubts about friction that a loaded rest or unloaded strokes contradict.
 
     Below the limits the readings count as uniform errors of either sign.
 
@@ -127,7 +127,7 @@ def of_loaded_and_idle(
     readings
         From `without_sliding`.
     zero
-        What the zero rests on; the half loop is free of a tilt, but not of drag.
+        Source of the zero; the half loop is free of a tilt, but not of drag.
     mean
         Mean friction force of each segment [N].
     load

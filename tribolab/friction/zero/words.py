@@ -14,7 +14,7 @@ from tribolab.friction.zero.rests import LightRest, PartialContact
 def words_of(
     strokes: StrokeMeans, loops: Middles, pair: np.ndarray, allowance: np.ndarray, i: int
 ) -> str:
-    """Text on the source of the zero of a segment."""
+    """Return a text on the source of the zero of a segment."""
     number = strokes.number
     drift = ", drift between the loops taken out" if np.any(loops.slope != 0) else ""
     if pair[i] >= 0:
@@ -48,7 +48,7 @@ def of_speeds(
     allowance: np.ndarray,
     measured: bool,
 ) -> list[Doubt]:
-    """Doubt pairs of unequal speeds whose friction is not known to be equal."""
+    """Return doubts about pairs of unequal speeds whose friction is not known to be equal."""
     speed = strokes.speed[loops.member]
     mean = speed.mean(axis=1)
     apart = np.abs(speed[:, 0] - speed[:, 1])
@@ -66,7 +66,7 @@ def of_speeds(
         f"If friction hardly changes between them, say `pair_tolerance = {wanted:.1f}` under "
         "[friction]; else measure both directions at one speed, or a rest without load."
     )
-    # what the run measures is in the error; what it does not, is guessed there
+    # measured change with speed is included in the error; otherwise it is assumed
     status = "pass" if measured else "suspect"
     return [doubt(text, cure, np.flatnonzero(np.isin(strokes.pair, np.flatnonzero(far))), status)]
 
@@ -86,7 +86,7 @@ def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[Doubt, ...]:
 
 
 def of_partial_contact(partial: PartialContact, load: float, segments: int) -> Doubt:
-    """Doubt rests that read more than the unloaded one."""
+    """Return the doubt about rests that read more than the unloaded one."""
     share = partial.level / load
     text = (
         f"{many(partial.rests, 'rest')} from t = {partial.start:.4g} s on read {partial.level:.3g} "
@@ -99,7 +99,7 @@ def of_partial_contact(partial: PartialContact, load: float, segments: int) -> D
 
 
 def of_retained_load(level: float, load: float, segments: int) -> Doubt:
-    """Note a zero of the load cell that may include a retained load."""
+    """Return a note on a zero of the load cell that may include a retained load."""
     text = (
         f"the load cell reads {level:.3g} N ({level / load:.1%} of the load) in the rests without "
         "load. This was taken for its zero. It may also be load that the rests retain: the "
@@ -113,7 +113,7 @@ def of_retained_load(level: float, load: float, segments: int) -> Doubt:
 
 
 def of_leak(leak: float, load: float, which: np.ndarray) -> Doubt:
-    """Doubt a load whose reading changes between a loaded rest and sliding."""
+    """Return the doubt about a load whose reading changes between a loaded rest and sliding."""
     text = (
         f"the load reads {leak:+.3g} N ({leak / load:+.1%}) while sliding compared with the loaded "
         "rest: friction leaks into the load reading, or the load itself changes. If it leaks, the "
@@ -127,7 +127,7 @@ def of_leak(leak: float, load: float, which: np.ndarray) -> Doubt:
 
 
 def of_light_rest(rest: LightRest, load: float, segments: int) -> Doubt:
-    """Doubt a load whose zero a rest may show."""
+    """Return the doubt about a load whose zero a rest may show."""
     share = rest.level / load
     between = f"{rest.start:.4g} s to {rest.stop:.4g} s"
     text = (

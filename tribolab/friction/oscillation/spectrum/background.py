@@ -7,11 +7,11 @@ from scipy import special
 
 from tribolab.friction.oscillation import limits
 
-_CORNER_FREQUENCIES = 24  # corner frequencies that are tried
-# white noise over the red, at zero
+_CORNER_FREQUENCIES = 24  # number of trial corner frequencies
+# power of the white noise over that of the red noise at zero frequency
 _WHITE_SHARES = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 25)])
-_LEVEL_SHIFTS = np.linspace(-1.2, 1.2, 17)  # of the level (natural log) that are tried
-_COST_MARGIN = 1e-3  # of the cost, far above what single precision loses
+_LEVEL_SHIFTS = np.linspace(-1.2, 1.2, 17)  # trial shifts of the level (natural log)
+_COST_MARGIN = 1e-3  # of the cost, far above the rounding of single precision
 
 
 def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> np.ndarray:
@@ -30,17 +30,16 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
     Notes
     -----
     S(f) = S_0 [1/(1 + (f/f_c)^2) + w]: an AR(1) process far below the sampling rate, and the
-    sensor's white noise. The least sum of absolute deviations of log S, weighted with the root of
-    the degrees of freedom; what stands above by more than a factor of two counts as if it stood
-    there, so that peaks and their harmonics do not lift their own background. All models are
-    tried at once.
+    sensor's white noise. The sum of absolute deviations of log S, weighted with the root of the
+    degrees of freedom, is minimised; excesses above a factor of two are clipped, so that peaks and
+    their harmonics do not raise their own background. All models are evaluated at once.
     """
     corners = np.concatenate(
         [np.geomspace(frequency[0] / 4, frequency[-1] * 2, _CORNER_FREQUENCIES), [np.inf]]
     )
     shape = 1 / (1 + (frequency[None, :] / corners[:, None]) ** 2)
     models = np.log(shape[:, None, :] + _WHITE_SHARES[None, :, None]).reshape(-1, frequency.size)
-    # a mean of few exponential values lies below its expectation in the log
+    # the log of a mean of few exponential values is biased low
     half = freedom / 2
     measured = np.log(np.maximum(power, 1e-300)) - (special.digamma(half) - np.log(half))
     weight = np.sqrt(np.minimum(freedom, 64.0))
@@ -55,7 +54,7 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
 def _least_off(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
     """Return the model (model, band) and the shift of its level with the least cost.
 
-    Single precision, in half the time, tells which may be: these are computed in full.
+    Candidates are selected in single precision, in half the time, and computed in full precision.
     """
     roughly, off = rest.astype(np.float32), np.empty(rest.shape, np.float32)
     cost = np.stack(
@@ -70,7 +69,7 @@ def _least_off(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
 def _cost(
     rest: np.ndarray, shift: np.ndarray | np.float32, weight: np.ndarray, off: np.ndarray
 ) -> np.ndarray:
-    """Weighted sum of what is off (model), far above the model cut; `off` is written over."""
+    """Return the weighted cost of each model, excesses clipped (model); overwrites `off`."""
     np.subtract(rest, shift, out=off)
     np.minimum(off, limits.MAX_EXCESS_OF_BAND.value, out=off)
     cost: np.ndarray = np.abs(off, out=off) @ weight
@@ -78,7 +77,7 @@ def _cost(
 
 
 def _quantile(values: np.ndarray, share: float) -> np.ndarray:
-    """Quantile of each row (row, 1); of numbers without gaps, which `numpy.quantile` looks for."""
+    """Return a quantile of each row (row, 1), without the NaN check of `numpy.quantile`."""
     place = share * (values.shape[1] - 1)
     first = min(int(place), values.shape[1] - 2)
     part = np.partition(values, (first, first + 1), axis=1)[:, first : first + 2]
@@ -87,7 +86,7 @@ def _quantile(values: np.ndarray, share: float) -> np.ndarray:
 
 
 def false_alarm(power: np.ndarray, background: np.ndarray, freedom: np.ndarray) -> np.ndarray:
-    """Probability that noise shows such a band anywhere among all bands.
+    """Return the probability that noise shows such a band anywhere among all bands.
 
     Parameters
     ----------
@@ -109,6 +108,6 @@ def false_alarm(power: np.ndarray, background: np.ndarray, freedom: np.ndarray) 
 
 
 def significant_power(background: np.ndarray, freedom: np.ndarray, chance: float) -> np.ndarray:
-    """Power density that noise exceeds anywhere among all bands with the given probability."""
+    """Return the power density that noise exceeds in any band with the given probability."""
     single = -np.expm1(np.log1p(-chance) / background.size)
     return background * special.gammainccinv(freedom / 2, single) / (freedom / 2)

@@ -8,17 +8,15 @@ import numpy as np
 
 from tribolab.friction.oscillation import limits
 
-_BACKGROUND_BINS = 61  # bins around a line that give its background
-LONGEST_TRANSFORM = (
-    1 << 18
-)  # samples of one transform; more do not make a line clearer than it must be
+_BACKGROUND_BINS = 61  # bins around a line that determine its background
+LONGEST_TRANSFORM = 1 << 18  # samples of one transform; more are not needed for a clear line
 
 
 class Line(NamedTuple):
     """Spectral line: frequency [Hz], amplitude in the signal's unit, power over the background.
 
-    Where it was found in a segment of a run, also the segment's number and sliding speed [m/s],
-    and whether it is of the mains.
+    If found in a segment, also the segment's number and sliding speed [m/s], and whether it is
+    mains hum.
     """
 
     frequency: float
@@ -58,12 +56,12 @@ def segment_lines(
 
 
 def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies [Hz] and amplitudes of the sines in an evenly sampled stretch (Hann window).
+    """Return frequencies [Hz] and amplitudes of the sines in evenly sampled data (Hann window).
 
     Parameters
     ----------
     time
-        [s] (time), even to within its jitter.
+        [s] (time), evenly spaced except for jitter.
     values
         (time), without missing values.
     """
@@ -71,19 +69,19 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     interval = (time[n - 1] - time[0]) / (n - 1)
     place = np.arange(n) / (n - 1) - 0.5
     part = values[:n] - values[:n].mean()
-    part = part - 12 * place * (place @ part) / n  # a drift is no line
+    part = part - 12 * place * (place @ part) / n  # a drift is not a line
     window = np.hanning(n)
     amplitude = 2 * np.abs(np.fft.rfft(part * window)) / window.sum()
     return np.fft.rfftfreq(n, interval), amplitude
 
 
 def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> list[Line]:
-    """Find the lines of a stretch that noise does not explain.
+    """Return the lines of an interval that noise does not explain.
 
     Parameters
     ----------
     time, values
-        An evenly sampled stretch: [s] and any unit (time).
+        An evenly sampled interval: [s] and any unit (time).
     lowest
         Only lines above this frequency [Hz].
 
@@ -94,13 +92,13 @@ def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> lis
 
     Notes
     -----
-    The background is a running median of the power over some 60 bins. In noise the power in a bin,
-    over its mean, is exponential, so that a peak above -ln(1e-6 / bins) is chance in
+    The background is a running median of the power over some 60 bins. In noise the relative power
+    of a bin is exponentially distributed, so that a peak above -ln(1e-6 / bins) occurs by chance in
     one of a million spectra.
     """
     if values.size < 128 or not np.isfinite(values).all() or np.ptp(values) == 0:
         return []
-    # late: scipy takes long to load, and is not needed before there is a spectrum
+    # imported late: scipy takes long to load, and is not needed before there is a spectrum
     from scipy import ndimage
 
     frequency, amplitude = amplitude_spectrum(time, values)
@@ -120,7 +118,7 @@ def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> lis
 
 
 def mains_harmonic(frequency: float, resolution: float, sampling_rate: float) -> str:
-    """Name of the mains harmonic at a frequency, including aliases; else "".
+    """Return the name of the mains harmonic at a frequency, including aliases; else "".
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.lines import LONGEST_TRANSFORM, amplitude_spectrum
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
-_PEAK_SHIFT_BINS = 0.25  # of a bin, by which noise moves a peak
+_PEAK_SHIFT_BINS = 0.25  # shift of a peak due to noise
 _FUNDAMENTAL = {f"{base * k:g} Hz": base for base in (50.0, 60.0) for k in (1, 2, 3)}
 
 
@@ -23,8 +23,8 @@ class Mains(NamedTuple):
     name: str
 
 
-def _refined(frequency: np.ndarray, amplitude: np.ndarray, at: int) -> float:
-    """Return the frequency of a peak between its bins, by a parabola through three of them."""
+def _peak_frequency(frequency: np.ndarray, amplitude: np.ndarray, at: int) -> float:
+    """Return the frequency of a peak, interpolated by a parabola through three bins."""
     if not 0 < at < frequency.size - 1:
         return float(frequency[at])
     left, top, right = np.log(np.maximum(amplitude[at - 1 : at + 2], 1e-300))
@@ -34,13 +34,12 @@ def _refined(frequency: np.ndarray, amplitude: np.ndarray, at: int) -> float:
 
 
 def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
-    """Lines of the mains in a record that is sampled fast and evenly enough.
+    """Return the mains lines of a record that is sampled fast and evenly enough.
 
     Notes
     -----
-    Where to look is known, so that a line needs not stand out among all bins, as one of unknown
-    frequency must (see `find_lines`), but among those within the
-    grid's own 0.1 Hz only.
+    The frequency is known, so that a line must be significant only among the bins within the grid's
+    tolerance of 0.1 Hz, not among all bins (see `find_lines`).
     """
     n = record.values.size
     rate = 1 / record.spacing
@@ -62,14 +61,14 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
             continue
         at = near[np.argmax(amplitude[near])]
         usual = median(amplitude[around] ** 2) / np.log(2)
-        off = abs(_refined(frequency, amplitude, at) - true)
+        off = abs(_peak_frequency(frequency, amplitude, at) - true)
         if off > limits.MAX_MAINS_DEVIATION.value * true / 50 + _PEAK_SHIFT_BINS * frequency[1]:
-            continue  # of a short record a bin is wide: 57 Hz is no mains
+            continue  # in a short record a bin is wide: 57 Hz is not mains
         if (
             near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300))
             < limits.MAINS_BY_CHANCE.value
         ):
             harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
-    # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental
+    # among hundreds of segments noise may resemble a harmonic: require its fundamental
     names = {line.name for line in harmonics}
     return tuple(line for line in harmonics if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)

@@ -1,4 +1,4 @@
-"""Noise from sample to sample, and the step of the converter, from the samples themselves."""
+"""Sample-to-sample noise and quantisation step of a signal."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import numpy as np
 
 from tribolab.arrays.medians import median_in_pieces
 
-_SAMPLED_VALUES = 200_000  # values that suffice to find the quantisation step
+_SAMPLED_VALUES = 200_000  # values sufficient to find the quantisation step
 
 
 def quantisation_step(values: np.ndarray) -> float:
-    """Smallest step between recorded values, in their unit; 0 where values hardly repeat.
+    """Return the smallest step between recorded values; 0 if values hardly repeat.
 
     Notes
     -----
-    A digitised signal takes few different values. Where more than half of the values are
-    different, no step can be told from the numbers and none is claimed.
+    A digitised signal takes few different values. If more than half of the values are different,
+    the step cannot be determined.
     """
     values = _known(values)
     if values.size < 32:
@@ -25,18 +25,18 @@ def quantisation_step(values: np.ndarray) -> float:
     if levels.size < 2 or levels.size > 0.5 * sample.size:
         return 0.0
     steps = np.diff(levels)
-    # arithmetic leaves dust of 1e-12 between equal codes; it is not a step
+    # rounding leaves differences of 1e-12 between equal codes; they are not a step
     steps = steps[steps > 1e-9 * np.abs(levels).max()]
     return float(np.quantile(steps, 0.05)) if steps.size else 0.0
 
 
 def noise_level(values: np.ndarray) -> float:
-    """Robust standard deviation of the sample-to-sample noise, in the signal's unit.
+    """Return the robust standard deviation of the sample-to-sample noise, in the signal's unit.
 
     Notes
     -----
-    From second differences, which a drift or a slow wave leaves near zero: their median
-    absolute deviation over 0.6745 sqrt(6).
+    Median absolute second difference, which drift and slow waves hardly change, over 0.6745
+    sqrt(6).
     """
     values = _known(values)
     if values.size < 5:
@@ -49,8 +49,8 @@ def noise_level(values: np.ndarray) -> float:
 
 
 def _known(values: np.ndarray) -> np.ndarray:
-    """Values that are numbers, in a row; no copy is made if all are."""
+    """Return the finite values as one row; no copy is made if all are finite."""
     values = values.reshape(-1)
-    if not np.isnan(values.sum()):  # one number says whether anything is missing
+    if not np.isnan(values.sum()):  # the sum is NaN if any value is missing
         return values
     return values[~np.isnan(values)]

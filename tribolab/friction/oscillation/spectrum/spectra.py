@@ -10,12 +10,12 @@ from scipy import fft
 from tribolab.arrays.medians import median
 from tribolab.friction.oscillation import limits
 
-# samples of one transform over the whole record; longer ones are averaged
+# most samples of a single transform of the record; longer records are averaged
 _WHOLE_TRANSFORM = 1 << 16
-_MIN_WINDOW = 1 << 13  # samples of the stretches whose spectra are averaged, at least
-_MAX_WINDOWS = 384  # that are averaged at most, evenly spread: a spectrum good to 5 %
-_BATCH_SAMPLES = 1 << 18  # samples that are worked on at a time: they fit into the cache
-_HANN_WIDTH = 1.5  # bins that a line takes up
+_MIN_WINDOW = 1 << 13  # fewest samples of the intervals whose spectra are averaged
+_MAX_WINDOWS = 384  # most intervals that are averaged, evenly spread: accurate to 5 %
+_BATCH_SAMPLES = 1 << 18  # samples processed at a time: they fit into the cache
+_HANN_WIDTH = 1.5  # bins that a line covers
 
 
 class Spectrum(NamedTuple):
@@ -38,25 +38,25 @@ class EvenRecord(NamedTuple):
 
 
 def make_record(time: np.ndarray, values: np.ndarray) -> EvenRecord:
-    """Drop NaN, and determine whether sampling is even.
+    """Return a record without NaN, and whether its sampling is even.
 
     Examples
     --------
     >>> make_record(np.arange(4.0), np.array([1.0, np.nan, 2.0, 3.0])).time.tolist()
     [0.0, 2.0, 3.0]
     """
-    if not np.isfinite(values.sum()):  # one number says whether anything is missing
+    if not np.isfinite(values.sum()):  # the sum is NaN if any value is missing
         good = np.isfinite(values)
         time, values = time[good], values[good]
     n = values.size
     if n < 3:
         return EvenRecord(time, values, np.nan, True)
     spacing = float(time[-1] - time[0]) / (n - 1)
-    # of a long record every so many samples tell: a gap or another rate moves all that follow
+    # in a long record a subset is sufficient: a gap or another rate shifts all later samples
     some = max(1, n // _BATCH_SAMPLES)
     off = time[::some] - (time[0] + spacing * np.arange(0, n, some))
     even = bool(np.sqrt(np.mean(off * off)) < limits.MAX_UNEVEN_SPACING.value * spacing)
-    if not even:  # a clock that runs a little fast is even all the same: look at the steps
+    if not even:  # a clock that runs slightly fast is even, too: compare the steps
         largest = max(
             float(np.abs(np.diff(time[i : i + _BATCH_SAMPLES + 1]) - spacing).max())
             for i in range(0, n - 1, _BATCH_SAMPLES)
@@ -66,7 +66,7 @@ def make_record(time: np.ndarray, values: np.ndarray) -> EvenRecord:
 
 
 def block_means(values: np.ndarray, size: int) -> np.ndarray:
-    """Means over blocks of `size` samples; what is left over at the end is dropped."""
+    """Return means over blocks of `size` samples; an incomplete block at the end is dropped."""
     if size <= 1:
         return values
     count = values.size // size
@@ -87,7 +87,7 @@ def coarsened(record: EvenRecord, size: int) -> EvenRecord:
 
 
 def spectrum(record: EvenRecord) -> Spectrum:
-    """One-sided power spectrum of a record, its straight line removed.
+    """Return the one-sided power spectrum of a record, its straight line removed.
 
     Parameters
     ----------
@@ -97,9 +97,9 @@ def spectrum(record: EvenRecord) -> Spectrum:
     Returns
     -------
     Spectrum
-        Up to 65 536 samples: one transform, Hann window. More: Welch's average [1]_ over stretches
+        Up to 65 536 samples: one transform, Hann window. More: Welch's average [1]_ over intervals
         at high frequencies, and one transform of the record averaged over blocks at low ones, so
-        that slow waves are resolved, too. Where moments are uneven each transform is a fit of
+        that slow waves are also resolved. If the sampling is uneven each transform is a fit of
         sines (`tribolab.friction.oscillation.spectrum.uneven.lomb_scargle`).
 
     References
@@ -118,14 +118,14 @@ def spectrum(record: EvenRecord) -> Spectrum:
     frequency, power, width, freedom = (
         np.concatenate([a[below], b[above]]) for a, b in zip(low, high, strict=True)
     )
-    # means over blocks weaken what they average over
+    # compensates the attenuation by block means
     block = np.sinc(frequency[: below.sum()] * size * record.spacing) ** 2
     power[: below.sum()] /= block
     return Spectrum(frequency, power, width, freedom, method + ", Welch")
 
 
 def _transform(record: EvenRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Spectrum by one transform of the whole record."""
+    """Return the spectrum by one transform of the whole record."""
     n = record.values.size
     count = n // 2 + 1
     duration = n * record.spacing
@@ -140,10 +140,11 @@ def _transform(record: EvenRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
         steps = np.diff(record.time)
         share = np.minimum(np.append(steps, steps[-1]), np.append(steps[0], steps))
         weights = window * np.minimum(share, 4 * median(steps))
-        # late: starting stays quick
+        # imported late for a fast start
         from tribolab.friction.oscillation.spectrum.uneven import lomb_scargle
 
-        # a sine of amplitude a holds a^2/2, spread over one and a half bins by the window
+        # a sine of amplitude a has the variance a^2/2, spread over one and a half bins by the
+        # window
         squares = lomb_scargle(record.time, values, weights, frequency[1], count)
         power = squares / 2 * duration / _HANN_WIDTH
     width = np.full(count, 1 / duration)
@@ -151,7 +152,7 @@ def _transform(record: EvenRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
 
 
 def line_through(place: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Least-squares straight line at the places."""
+    """Return the least-squares straight line at the given places."""
     x = place - place.mean()
     mean = values.mean()
     return mean + x * ((x @ (values - mean)) / max(float(x @ x), 1e-300))
@@ -160,7 +161,7 @@ def line_through(place: np.ndarray, values: np.ndarray) -> np.ndarray:
 def _averaged(
     record: EvenRecord, window: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Spectrum averaged over stretches of `window` samples that do not overlap."""
+    """Return the spectrum averaged over intervals of `window` samples that do not overlap."""
     count = record.values.size // window
     frequency = np.arange(window // 2 + 1) / (window * record.spacing)
     shape = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(window) + 0.5) / window)
@@ -168,7 +169,7 @@ def _averaged(
     if record.even:
         rows = max(1, _BATCH_SAMPLES // window)
         level, scale = _level_and_scale(record.values)
-        # the fluctuation in single precision: rounding is a white noise 140 dB below it
+        # single precision: rounding adds white noise at -140 dB
         shape32 = (shape / scale).astype(np.float32)
         every = -(-count // _MAX_WINDOWS)
         stretches = record.values[: count * window].reshape(-1, window)[::every]
@@ -192,7 +193,7 @@ def _averaged(
 
 
 def _level_and_scale(values: np.ndarray) -> tuple[float, float]:
-    """Mean and standard deviation of a long record, from a sample of it."""
+    """Return mean and standard deviation of a long record, from a sample of it."""
     some = values[:: max(1, values.size // _BATCH_SAMPLES)]
     spread = float(some.std())
     return float(some.mean()), spread if spread > 0 else 1.0
@@ -203,7 +204,7 @@ def _own_spacing(record: EvenRecord) -> float:
 
 
 def bands(spectrum: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarray, ...]:
-    """Average a spectrum over bands of equal relative width, each of one bin at least.
+    """Return a spectrum averaged over bands of equal relative width, of at least one bin each.
 
     Parameters
     ----------
@@ -212,7 +213,7 @@ def bands(spectrum: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarr
     per_decade
         Bands in a decade of frequency.
     first
-        First bin that counts: below, a window lets the trend through.
+        First bin used: lower ones contain the leakage of the trend.
 
     Returns
     -------
@@ -231,6 +232,6 @@ def bands(spectrum: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarr
     width = np.add.reduceat(spectrum.width, starts)
     power = np.add.reduceat(spectrum.power * spectrum.width, starts) / width
     middle = np.add.reduceat(f, starts) / count
-    # a Hann window ties neighbouring bins together: two thirds of them are independent
+    # a Hann window correlates neighbouring bins: two thirds of them are independent
     freedom = np.add.reduceat(spectrum.freedom, starts) / np.where(count > 1, 1.5, 1.0)
     return middle, power, width, freedom, starts

@@ -25,10 +25,10 @@ class Survey(NamedTuple):
         Bands: frequency [Hz], power density, width [Hz], degrees of freedom, first bin.
     background
         Power density of red and white noise (band).
-    chance
-        Probability that noise shows as much, `rise` over all slower bands (band).
+    chance, rise
+        Probability that noise reaches this power, and that it exceeds the slower bands so far.
     duration
-        Of the record [s].
+        Duration of the record [s].
     mains
         Lines of the mains.
     """
@@ -47,7 +47,7 @@ class Survey(NamedTuple):
 
     @property
     def cycles(self) -> np.ndarray:
-        """How many periods of each band's frequency the record holds."""
+        """Number of periods of each band's frequency in the record (band)."""
         return self.middle * self.duration
 
     @property
@@ -57,9 +57,9 @@ class Survey(NamedTuple):
 
     @property
     def significant(self) -> np.ndarray:
-        """Which bands noise does not explain.
+        """Mask of the bands that noise does not explain.
 
-        Where many bins are averaged, less than the background's own shape is significant.
+        A minimum ratio excludes misfits of the background, significant with many averaged bins.
         """
         tall = self.power > limits.MIN_PEAK_OVER_BACKGROUND.value * self.background
         return (
@@ -69,7 +69,7 @@ class Survey(NamedTuple):
         )
 
     def without(self, part: np.ndarray) -> Survey:
-        """Return the survey with the background in the place of some bins (bin)."""
+        """Return the survey with some bins replaced by the background (bin)."""
         level = np.interp(self.fine.frequency, self.middle, self.background)
         fine = self.fine._replace(power=np.where(part, level, self.fine.power))
         return _seen(fine, self.duration, self.mains, self.background)
@@ -112,21 +112,21 @@ def _seen(
 def above_lower(
     fine: Spectrum, middle: np.ndarray, power: np.ndarray, freedom: np.ndarray
 ) -> np.ndarray:
-    """Probability that a spectrum that does not rise anywhere shows so high a band.
+    """Return the probability that a non-rising spectrum shows so high a band by chance (band).
 
     Parameters
     ----------
     fine
         The spectrum in its own bins.
     middle, power, freedom
-        The same in bands.
+        The spectrum in bands.
 
     Returns
     -------
     ndarray
-        Tail of the F distribution of each band's power over the mean of that from a quarter to two
-        thirds of its frequency (band). However red a noise is, its spectrum falls: what stands
-        above everything slower is no slow wander.
+        Tail of the F distribution of each band's power relative to the mean power between a quarter
+        and two thirds of its frequency (band). The spectrum of red noise falls: a band above all
+        slower ones is not slow drift.
     """
     sums = np.concatenate([[0.0], np.cumsum(fine.power * fine.freedom)])
     count = np.concatenate([[0.0], np.cumsum(fine.freedom)])

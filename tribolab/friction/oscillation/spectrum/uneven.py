@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-_SPREAD_POINTS = 6  # grid points to either side that a sample is spread over: errors of some 1e-6
+_SPREAD_POINTS = 6  # grid points on each side over which a sample is spread: errors of about 1e-6
 
 
 def fourier_sums(time: np.ndarray, values: np.ndarray, step: float, count: int) -> np.ndarray:
-    """Sum ``values * exp(-2 pi i f time)`` at the frequencies ``0, step, ... (count-1) step``.
+    """Return the sums of ``values * exp(-2 pi i f time)`` at the frequencies ``0, step, ...``.
 
     Parameters
     ----------
     time, values
-        Samples at any moments [s] (time).
+        Samples at arbitrary times [s] (time).
     step
         Spacing of the frequencies [Hz].
     count
-        How many frequencies.
+        Number of frequencies.
 
     Returns
     -------
@@ -27,8 +27,8 @@ def fourier_sums(time: np.ndarray, values: np.ndarray, step: float, count: int) 
 
     Notes
     -----
-    Each sample is spread over twelve points of a grid twice as fine as need be by a Gaussian, the
-    grid is transformed, and the Gaussian's own transform is divided out [1]_.
+    Each sample is spread by a Gaussian over twelve points of a grid oversampled by two, the grid is
+    transformed, and the result is divided by the transform of the Gaussian [1]_.
 
     References
     ----------
@@ -42,7 +42,7 @@ def fourier_sums(time: np.ndarray, values: np.ndarray, step: float, count: int) 
     True
     """
     size = fft.next_fast_len(4 * max(count, 8), real=True)
-    place = ((time - time[0]) * step % 1.0) * size  # grid points in one turn of the lowest
+    place = ((time - time[0]) * step % 1.0) * size  # grid points in the lowest period
     nearest = np.floor(place).astype(np.int64)
     width = 2 * _SPREAD_POINTS / (3 * np.pi)  # variance of the Gaussian for an oversampling of two
     grid = np.zeros(size)
@@ -57,7 +57,7 @@ def fourier_sums(time: np.ndarray, values: np.ndarray, step: float, count: int) 
 def lomb_scargle(
     time: np.ndarray, values: np.ndarray, weights: np.ndarray, step: float, count: int
 ) -> np.ndarray:
-    """Square of the amplitude of the sine that fits best, at each frequency.
+    """Return the squared amplitude of the best-fitting sine at each frequency.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def lomb_scargle(
     Notes
     -----
     The normalised periodogram of unevenly sampled data [1]_: with the phase tau that makes sine and
-    cosine orthogonal over the samples, each is fitted by itself.
+    cosine orthogonal over the samples, each is fitted separately.
 
     References
     ----------
