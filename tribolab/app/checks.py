@@ -201,7 +201,7 @@ def check_files(
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> list[Checked]:
-    """Read and check runs, scans and results of roughness testers; a bad file stops no others.
+    """Read and check runs, scans and results of roughness testers; a bad file does not stop others.
 
     Parameters
     ----------

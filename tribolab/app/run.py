@@ -156,14 +156,14 @@ def run_here_if_lost(
     scheduler: str | None,
     **options: Any,
 ) -> Outcome:
-    """Run a campaign on a cluster, or in this process if the cluster is lost or does not answer.
+    """Run a campaign on a cluster, or on this computer if the cluster is lost or does not answer.
 
     Parameters
     ----------
     path_or_campaign, scheduler, options
         As for `run_campaign`.
     say
-        Called with the reason before the campaign runs in this process.
+        Called with the reason before the campaign runs on this computer.
     """
     try:
         return run_campaign(path_or_campaign, scheduler=scheduler, **options)

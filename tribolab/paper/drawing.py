@@ -226,7 +226,7 @@ def paper_shear_stress(data: PaperData) -> FigureAndText:
 
 
 def smooth_and_theory(data: PaperData) -> FigureAndText:
-    """Smooth at all loads, and the theory at the lowest."""
+    """Draw Smooth at all loads, and the theory at the lowest."""
     measured = [data.measured("Smooth", "glycerol", force) for force in data.forces]
     force = data.forces[0]
     model = data.read("wet", "Smooth", f"curve_{force:g}N")

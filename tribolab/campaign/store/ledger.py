@@ -89,7 +89,7 @@ class Ledger:
 
     @classmethod
     def read(cls, folder: Path) -> Ledger:
-        """Read the marker of a folder; a missing or irregular one lists no files."""
+        """Read the marker of a folder; one that is missing or not a regular file lists no files."""
         try:
             text = (folder / MARKER).read_bytes() if (folder / MARKER).is_file() else b""
         except OSError:

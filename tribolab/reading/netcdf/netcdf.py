@@ -231,7 +231,7 @@ def _read_groups(
 
 
 def read_short(path: str | Path, most: float) -> dict[str | None, xr.Dataset]:
-    """Read all short groups of a file, including the root.
+    """Read all groups of a file that are short, and the root if it is.
 
     Parameters
     ----------
