@@ -20,7 +20,7 @@ SHEAR_TO_TENSILE = 3.0  # E = 2 (1 + nu) G of an incompressible solid
 _NO_UNIT = ("", "-", "1", "[]", "[-]", "[1]")
 _SAME_FREQUENCY = 1e-3  # of it: what rounding leaves of one set-point
 _SAME_TEMPERATURE = 3.0  # K: what an oven leaves within one sweep
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
 
 
 class ModulusTable(NamedTuple):

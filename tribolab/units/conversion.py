@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pint
 
 _MAX_QUANTITY = 200  # letters of a number with its unit
-_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+_NUMBER = re.compile(r"^\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
 # Units that instruments write differently from pint, or that pint does not know.
 _SPELLINGS = {

@@ -23,7 +23,7 @@ from tribolab.friction.running_in.amount import discard_amount
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.units.conversion import to_si
 
-_NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
+_NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+(?:\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
 
 
 @dataclass(frozen=True)
