@@ -1,1 +1,1 @@
-"""Measured curves held against computed ones."""
+"""Comparison of measured curves with computed ones."""

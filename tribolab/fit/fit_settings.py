@@ -18,33 +18,33 @@ _FREE = ("viscosity", "youngs_modulus")
 
 @dataclass(frozen=True)
 class FitSettings:
-    """Which points are fitted, what else is free, and which errors they share.
+    """Points and free parameters of a fit, and errors shared by the points.
 
     Parameters
     ----------
     speed_range
         Lowest and highest speed [m/s] to fit; None for all.
     free
-        More parameters to fit: ``"viscosity"``, ``"youngs_modulus"``; their given values start.
+        Additional free parameters: ``"viscosity"``, ``"youngs_modulus"``; the given values are
+        starting values.
     curve
-        The computed curve, if it is at hand: `stribeck_curve` of the same system at the measured
-        speeds (and others), with ``"0 Pa"``.
+        The computed curve, if available: `stribeck_curve` of the same system at the measured speeds
+        (and others), with ``"0 Pa"``.
     area_enhancement, area_enhancement_error
         Real contact area with adhesion over that without [1], and its standard error.
     common_error, common_freedom
-        Relative standard error [1] that all measured points share, such as the repeatability of
-        a run's level over the square root of the number of runs, and the degrees of freedom
-        behind it.
+        Relative standard error [1] that all measured points share, such as the repeatability of a
+        run's level over the square root of the number of runs, and its degrees of freedom.
     spectrum_error
-        Relative changes [1] of sigma_f, down and up, that an uncertain spectrum may make, from
-        `shear_stress_shift`. A spectrum with ``psd_2d_low`` was measured: without this
-        there is no interval but a statistical one.
+        Relative changes [1] of sigma_f, down and up, due to an uncertain spectrum, from
+        `shear_stress_shift`. For a measured spectrum (with ``psd_2d_low``), only a statistical
+        interval is given without it.
     abscissa_error
-        Relative standard uncertainty [1] of viscosity times speed, the same along the curve; not
-        with a free viscosity, which takes it up.
+        Relative standard uncertainty [1] of viscosity times speed, constant along the curve; not
+        used with a free viscosity, which includes it.
     inputs
-        What uncertain load, radius and modulus make of the curve, from `model_inputs`; a modulus
-        that is fitted is left out of it.
+        Changes of the curve due to uncertain load, radius and modulus, from `model_inputs`; a
+        fitted modulus is left out.
 
     Examples
     --------
@@ -64,7 +64,7 @@ class FitSettings:
     inputs: xr.Dataset | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is not possible."""
+        """Convert text to SI values and raise an error for impossible settings."""
         unknown = [name for name in self.free if name not in _FREE]
         if unknown:
             raise AnalysisError(
@@ -85,7 +85,7 @@ SETTINGS = {field.name for field in fields(FitSettings)}
 def merge_old_settings(
     settings: FitSettings | None, options: Mapping[str, Any]
 ) -> tuple[FitSettings, dict[str, Any]]:
-    """Return the settings with what was an argument in the last release, and all other options."""
+    """Return the settings including arguments of the last release, and all other options."""
     old = {name: value for name, value in options.items() if name in SETTINGS}
     if old:
         warnings.warn(

@@ -1,4 +1,4 @@
-"""What a mixed-lubrication model leaves out, with the size that it may have."""
+"""Effects neglected by a mixed-lubrication model, with their possible size."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SHEET_THICKNESSES = (10e-3, 5e-3)  # m, of usual rubber sheets
 
 
 def left_out(base: Base) -> list[Skipped]:
-    """Return what no variation reaches and the model does not contain, with sizes if they follow.
+    """Return effects that are neither varied nor modelled, with their size if it can be estimated.
 
     Parameters
     ----------
@@ -75,11 +75,11 @@ def _of_layers(base: Base, a: float) -> str:
 
 
 def _squeezing_time(base: Base, a: float, height: float) -> float:
-    """Time [s] in which the film under a flat punch thins from thick to a height [m].
+    """Return the time [s] in which the film under a flat punch thins to a height [m].
 
     Notes
     -----
-    ``3 pi eta a^4/(4 F h^2)`` of a disk, ``4 eta a^3/(W h^2)`` of a strip of width 2 a.
+    ``3 pi eta a^4/(4 F h^2)`` for a disk, ``4 eta a^3/(W h^2)`` for a strip of width 2 a.
     """
     if base.contact.is_round:
         return 3 * np.pi * base.viscosity * a**4 / (4 * base.load * height**2)

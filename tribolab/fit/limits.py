@@ -1,4 +1,4 @@
-"""Numbers that decide what a fit of models to friction reports."""
+"""Limits for the conclusions from fits of models to friction."""
 
 from tribolab.core.limit import Count, Limit
 

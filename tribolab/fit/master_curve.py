@@ -1,4 +1,4 @@
-"""Whether friction in several liquids is one function of viscosity times speed."""
+"""Test whether friction in several liquids is one function of viscosity times speed."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from scipy.stats import f as f_distribution
 
 from tribolab.core.errors import AnalysisError
 
-_SPLINE_COEFFICIENTS = 14  # of the spline; with seven the test is worthless
+_SPLINE_COEFFICIENTS = 14  # with seven the test is insensitive
 
 
 class Collapse(NamedTuple):
-    """F-test of one curve against a level and a slope for each liquid.
+    """F-test of a common curve against a level and a slope for each liquid.
 
     Parameters
     ----------
     statistic, p_value
-        F and the chance of a larger one if there is one curve.
+        F, and the probability of a larger F if the curve is common.
     level, slope
-        Of each liquid relative to the first: ln mu, and d ln mu/d ln(eta v).
+        ln mu, and d ln mu/d ln(eta v), of each liquid relative to the first.
     abscissa, fitted
         eta v [N/m], rising, and the common curve there [1].
     """
@@ -50,10 +50,10 @@ def collapse_test(
         ``friction_coefficient`` with ``_sem`` (sliding_speed), one for each liquid, of one contact
         and load.
     viscosity
-        Of each liquid [Pa s].
+        Viscosity of each liquid [Pa s].
     level_error, viscosity_error
-        Relative standard uncertainty [1] that all points of a liquid share, of friction and of
-        viscosity.
+        Relative standard uncertainties [1] of friction and viscosity, common to all points of a
+        liquid.
 
     Returns
     -------
@@ -66,11 +66,11 @@ def collapse_test(
 
     Notes
     -----
-    ln mu is a cubic spline of ln(eta v) with 14 coefficients, compared with that and a level and a
-    slope for each liquid but the first, by generalised least squares: noise of the points, and the
-    errors of level and viscosity, the latter times the curve's slope. In a Newtonian liquid the
-    curve is one at one load, exactly. A shear stress that depends on speed, another work of
-    adhesion of the liquid, shear thinning and heating break it.
+    A cubic spline of ln mu over ln(eta v) with 14 coefficients is compared with the same spline
+    plus a level and a slope for each liquid except the first. Both are fitted by generalised least
+    squares, with the noise of the points and the errors of level and viscosity (times the slope of
+    the curve). For Newtonian liquids at one load the curve is exactly common. A shear stress that
+    depends on speed, different works of adhesion, shear thinning and heating break the collapse.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def collapse_test(
     rss, best = _least(white[1], target)
     rss_more, wide = _least(np.hstack(white[1:]), target)
     freedom = x.size - np.linalg.matrix_rank(np.hstack(white[1:]))
-    # the errors are known: chi-square per degree of freedom at least 1
+    # the errors are known: use at least 1 for chi-square per degree of freedom
     statistic = (rss - rss_more) / extra / max(rss_more / freedom, 1.0)
     found = wide[_SPLINE_COEFFICIENTS:]
     order = np.argsort(x)
@@ -128,7 +128,7 @@ def collapse_test(
 
 
 def _spline(x: np.ndarray) -> np.ndarray:
-    """Cubic B-splines with knots at quantiles (points, coefficients)."""
+    """Return cubic B-splines with knots at quantiles (points, coefficients)."""
     inner = np.quantile(x, np.linspace(0, 1, _SPLINE_COEFFICIENTS - 2)[1:-1])
     low, high = x.min(), x.max()
     knots = np.concatenate([np.full(4, low), inner, np.full(4, high)])

@@ -1,4 +1,4 @@
-"""What load, radius and modulus that are known within an error make of a computed curve."""
+"""Changes of a computed curve due to uncertain load, radius and modulus."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
 
 _INPUTS = ("load", "radius", "youngs_modulus")
-_LN_STEP = 0.02  # of ln x, to both sides
+_LN_STEP = 0.02  # of ln x, on both sides
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 _SOLID = "friction_per_shear_stress"
 _MOVED = ("fluid_part", "solid_part", "solid_part_other")
@@ -34,15 +34,15 @@ def model_inputs(
     errors: Mapping[str, float],
     **model: Any,
 ) -> xr.Dataset:
-    """How far a computed curve moves by one standard uncertainty of load, radius and modulus.
+    """Return the change of a computed curve by one standard uncertainty of each model input.
 
     Parameters
     ----------
     contact, psd, viscosity, load
         As for `stribeck_curve`, with one load.
     speed
-        Sliding speeds [m/s] (sliding_speed), above zero; some three in a decade are enough, since
-        what moves is smooth.
+        Sliding speeds [m/s] (sliding_speed), above zero; some three per decade are enough, because
+        the changes are smooth.
     errors
         Relative standard uncertainties [1] of ``"load"``, ``"radius"``, ``"youngs_modulus"``.
     **model
@@ -51,9 +51,9 @@ def model_inputs(
     Returns
     -------
     xarray.Dataset
-        Over ``model_input`` and ``sliding_speed``, with their sign: ``fluid_part`` [1] of the
-        liquid's friction; ``solid_part`` [1/Pa] of what the shear stress is multiplied with, and
-        ``solid_part_other`` of that with the other theory of the contact area.
+        Signed changes over ``model_input`` and ``sliding_speed``: ``fluid_part`` [1] of the fluid
+        friction; ``solid_part`` [1/Pa] of the factor of the shear stress, and ``solid_part_other``
+        of this factor by the other theory of the contact area.
 
     Raises
     ------
@@ -62,10 +62,10 @@ def model_inputs(
 
     Notes
     -----
-    Central differences over 4 % of each input, two curves for each. Measured friction is held: it
-    is the force over the force that was recorded, whatever the model takes the load to be. Where
-    all forces grow alike nothing changes: ``d mu/d ln(viscosity v) + d mu/d ln(load) +
-    d mu/d ln(modulus) + sigma_f d mu/d sigma_f = 0``.
+    Central differences over 4 % of each input, two curves for each. Measured friction is constant:
+    it is the ratio of recorded forces, independent of the load in the model. If all forces grow
+    alike nothing changes: ``d mu/d ln(viscosity v) + d mu/d ln(load) + d mu/d ln(modulus) + sigma_f
+    d mu/d sigma_f = 0``.
 
     Examples
     --------
@@ -88,11 +88,13 @@ def model_inputs(
     parameters = parameters_of(viscosity, 0.0, **model)
     cells = min(parameters.solver.cells, limits.MAX_CELLS_OF_CHANGE.value)
     solver = replace(parameters.solver, cells=cells)
-    if contact.is_round:  # a change needs no more than the reduced theory
+    if contact.is_round:  # the reduced theory is sufficient for a change
         solver = replace(parameters.solver, method="auto")
     parameters = parameters._replace(solver=solver)
     rows = []
-    near: SolvedCurve | None = None  # the curve before: it differs by a few percent
+    near: SolvedCurve | None = (
+        None  # the previous curve, which differs by a few percent, is the starting point
+    )
     for name, error in errors.items():
         ends = []
         for factor in (np.exp(_LN_STEP), np.exp(-_LN_STEP)):
@@ -115,14 +117,14 @@ def model_inputs(
 
 
 def _columns(above: xr.Dataset, below: xr.Dataset) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the friction of the liquid and both contact areas, at both ends of an input."""
+    """Return the friction of the fluid and both contact areas, at both ends of an input."""
     names = (_SOLID, f"{_SOLID}_other")
     fluid = [end[_PARTS[0]].values + end[_PARTS[1]].values for end in (above, below)]
     return [(fluid[0], fluid[1]), *((above[n].values, below[n].values) for n in names)]
 
 
 def moved_friction(inputs: xr.Dataset, shear_stress: float, speed: np.ndarray) -> np.ndarray:
-    """Return by how much each input moves friction at speeds (model_input, sliding_speed).
+    """Return the change of friction by each input at given speeds (model_input, sliding_speed).
 
     Parameters
     ----------
@@ -131,7 +133,7 @@ def moved_friction(inputs: xr.Dataset, shear_stress: float, speed: np.ndarray) -
     shear_stress
         sigma_f [Pa].
     speed
-        Speeds [m/s]; between those of `inputs`, over the logarithm.
+        Speeds [m/s]; `inputs` are interpolated over their logarithm.
     """
     place = np.log(inputs["sliding_speed"].values)
     rows = inputs["fluid_part"].values + shear_stress * inputs["solid_part"].values

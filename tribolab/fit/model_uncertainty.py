@@ -1,4 +1,4 @@
-"""How far a computed Stribeck curve can be trusted: what is not known, varied one at a time."""
+"""Uncertainty of a computed Stribeck curve from its unknowns, varied one at a time."""
 
 from __future__ import annotations
 
@@ -50,21 +50,21 @@ def model_uncertainty(
     refit: bool = False,
     **options: Any,
 ) -> xr.Dataset:
-    """Band on a computed Stribeck curve from what is not known, and what moves it most.
+    """Return an uncertainty band of a computed Stribeck curve, and the effect of each unknown.
 
     Parameters
     ----------
     contact, psd, liquid, load, interface, solver
-        As for `stribeck_curve`, with one load. Of the spectrum ``psd_2d_low``, ``psd_2d_high`` and
-        ``origin`` are used where it has them.
+        As for `stribeck_curve`, with one load. ``psd_2d_low``, ``psd_2d_high`` and ``origin`` of
+        the spectrum are used if available.
     speed
-        Sliding speeds [m/s] (sliding_speed), above zero; by default 17 from 1 nm/s to 0.1 m/s.
-        With a slide-roll ratio they are the speeds that `Interface.abscissa` names.
+        Sliding speeds [m/s] (sliding_speed), above zero; by default 17 from 1 nm/s to 0.1 m/s. With
+        a slide-roll ratio they are the speeds named by `Interface.abscissa`.
     unknowns
-        `Unknowns`; None takes what is stated as exact, but not a vented outlet.
+        `Unknowns`; None treats stated inputs as exact, except a vented outlet.
     refit
-        Give each varied curve the sigma_f that fits the given curve best. So is the band what is
-        left to a model whose sigma_f is fitted to a measured curve anyway.
+        Use for each varied curve the sigma_f that fits the given curve best: the band of a model
+        whose sigma_f is fitted to a measured curve.
     **options
         Single fields of these objects, as they were arguments in the last release.
 
@@ -73,15 +73,15 @@ def model_uncertainty(
     xarray.Dataset
         ``friction_coefficient`` with ``_low`` and ``_high`` over ``sliding_speed``. Over
         ``variation`` (its name): ``variation_low``, ``variation_high`` (text: the ends of the
-        range; empty where it has one end), ``variation_reason``; ``largest_change`` [1], the
-        largest change of mu over the height of the curve, at ``largest_change_speed`` [m/s];
-        ``largest_relative_change`` [1] of mu at one speed, at ``largest_relative_change_speed``;
-        ``shear_stress_change_low``, ``shear_stress_change_high`` [1], relative change of the
-        sigma_f that each end needs to fit the given curve. The curves themselves are
-        ``friction_coefficient_varied`` (variation, range_end, sliding_speed), NaN where there is
-        no such end. The attribute ``not_varied`` names what was left out, and all that no variation
-        reaches, with the reason; ``validity`` and ``validity_reasons`` also say which variation
-        alone is beyond the theory's limits.
+        range; empty for a one-sided range), ``variation_reason``; ``largest_change`` [1], the
+        largest change of mu relative to the maximum of the curve, at ``largest_change_speed``
+        [m/s]; ``largest_relative_change`` [1] of mu at one speed, at
+        ``largest_relative_change_speed``; ``shear_stress_change_low``, ``shear_stress_change_high``
+        [1], relative change of sigma_f with which each end fits the given curve. The curves
+        themselves are ``friction_coefficient_varied`` (variation, range_end, sliding_speed), NaN
+        for a missing end. The attribute ``not_varied`` lists unknowns that were not varied, with
+        reasons; ``validity`` and ``validity_reasons`` also name variations beyond the theory's
+        limits.
 
     Raises
     ------
@@ -90,14 +90,14 @@ def model_uncertainty(
 
     Notes
     -----
-    Each range is what a careful reader would not be surprised by, roughly 95 %; that of percolation
-    is wider than numerics of isotropic surfaces [2]_ leave it. Deviations of
-    ln mu are combined in quadrature, those that raise mu at a speed for the upper edge and those
-    that lower it for the lower one: the unknowns are independent of each other, so their sum
-    would overstate the band; many are one-sided or bend the curve differently at both ends, so
-    that a symmetric band would hide the sign; and mu spans decades and stays positive, so that
-    ratios are combined. Of a variation whose two ends both raise mu the larger counts. The
-    reference for the changes is computed on the same coarser mesh, 100 cells, as the variations.
+    Each range has roughly 95 % coverage; that of percolation is wider than in numerical studies of
+    isotropic surfaces [2]_. Deviations of ln mu are combined in quadrature, those that raise mu at
+    a speed for the upper edge and those that lower it for the lower one: the unknowns are
+    independent of each other, so their sum would overstate the band; many are one-sided or bend the
+    curve differently at both ends, so that a symmetric band would hide the sign; and mu spans
+    decades and stays positive, so that ratios are combined. If both ends of a variation raise mu,
+    the larger change is used. The reference for the changes is computed on the same coarser mesh,
+    100 cells, as the variations.
 
     The refitted sigma_f is that of least squares with equal weights, as in `fit_shear_stress`.
 
@@ -120,7 +120,7 @@ def model_uncertainty(
     """
     warn_of_old("model_uncertainty", options)
     known, single = merge_old_options(unknowns, options)
-    if psd is not None:  # where nothing is rough there is nothing to vary
+    if psd is not None:  # a smooth surface has no roughness to vary
         rough = rough_band(psd)[0]
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
     force = positive(load, contact.load_unit, "load")
@@ -193,20 +193,20 @@ class _Given(NamedTuple):
     parameters: Parameters
 
     def changed(self, change: Mapping[str, Any]) -> _Given:
-        """Return the model with what one end of a range changes."""
+        """Return the model changed by one end of a range."""
         own = {name: value for name, value in change.items() if name in self._fields}
         left = {name: value for name, value in change.items() if name not in own}
         return self._replace(**own, parameters=parameters_of(*self.parameters, **left))
 
     def solved(self, near: SolvedCurve | None = None) -> SolvedCurve:
-        """Solve it, from what is near if that is known."""
+        """Solve the model, starting from a similar solution if available."""
         return solve_curve(self.contact, self.psd, self.load, self.speed, self.parameters, near)
 
 
 def _base(
     contact: Contact, psd: xr.Dataset | None, load: float, parameters: Parameters, known: Unknowns
 ) -> Base:
-    """Return the model as the variations take it, with the ranges in SI."""
+    """Return the model for the variations, with the ranges in SI."""
     liquid, interface, solver = parameters
     work = interface.work_of_adhesion
     return Base(
@@ -237,9 +237,9 @@ def _base(
 def _all_ends(
     coarse: _Given, varied: list[Variation], start: SolvedCurve, refit: bool
 ) -> tuple[np.ndarray, np.ndarray, list[dict[str, str]]]:
-    """Friction (variation, end, speed), relative change of the refitted sigma_f, and validity.
+    """Return friction (variation, end, speed), relative change of the refitted sigma_f, validity.
 
-    The numbers are NaN where a variation has no such end.
+    The numbers are NaN for missing ends.
     """
     reference = start.curve
     stress = coarse.parameters.interface.shear_stress
@@ -273,7 +273,7 @@ def _all_ends(
 
 
 def _of_the_same_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:
-    """Return the curve of an end that changes no film, as the reference knows it; else None."""
+    """Return the curve of an end that does not change the film, from the reference; else None."""
     if end.keys() == {"area"}:
         return reference.assign(
             friction_per_shear_stress=reference["friction_per_shear_stress_other"]
@@ -292,7 +292,7 @@ def _range(
     name: str,
     least: float = 0.0,
 ) -> tuple[float, float] | None:
-    """Return the ends of a range in SI, about the value that it is for, both above the least."""
+    """Return the ends of a range in SI around its value, both above the least possible value."""
     if given is None:
         return None
     read = positive if least == 0 else to_si
@@ -305,7 +305,7 @@ def _range(
 
 
 def _of_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarray]:
-    """Return the fitted stress's own error as a variation, and mu at its ends, without solving."""
+    """Return the error of the fitted stress as a variation, and mu at its ends, without solving."""
     stress, mu = reference.attrs["shear_stress_Pa"], reference["friction_coefficient"].values
     ends = np.array([max(stress - NORMAL * error, 0.0), stress + NORMAL * error])
     texts = (f"{ends[0] / 1e6:.3g} MPa", f"{ends[1] / 1e6:.3g} MPa")
@@ -316,7 +316,7 @@ def _of_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarr
 
 
 def _quadrature(deviation: np.ndarray) -> np.ndarray:
-    """Root of the sum of squares of the positive deviations, the larger end of each variation."""
+    """Return the root sum of squares of the variations' larger positive deviations."""
     if deviation.shape[0] == 0:
         return np.zeros(deviation.shape[-1])
     larger = np.nanmax(deviation, axis=1).clip(0)
@@ -333,7 +333,7 @@ def _table(
         "variation_reason": [variation.reason for variation in varied],
     }
     table: dict[str, tuple[str, Any]] = {
-        name: ("variation", np.array(texts, dtype=str))  # text also where nothing is varied
+        name: ("variation", np.array(texts, dtype=str))  # text also without variations
         for name, texts in words.items()
     }
     for name, over in (("largest_change", height.max()), ("largest_relative_change", height)):

@@ -1,4 +1,4 @@
-"""Errors of the points of a curve, with what they share: the covariance that a fit sees."""
+"""Errors of the points of a curve with their shared parts: the covariance for a fit."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from scipy.linalg import cholesky, solve_triangular
 
 from tribolab.metrology.budget_curve import shared_parts
 
-_MIN_ERROR = 1e-15  # of a coefficient: points that fit exactly have no error of their own
+_MIN_ERROR = 1e-15  # minimum error of a coefficient, also of points that fit exactly
 
 
 class PointErrors(NamedTuple):
-    """Errors of points: each one's own, and parts that move all of them together.
+    """Errors of points: individual errors, and shared parts that shift several points together.
 
     Parameters
     ----------
     own
         Standard error of each point (point).
     shared
-        By how much one standard uncertainty of each shared input moves the points, with its sign
-        (part, point); no row where nothing is shared.
+        Signed change of the points by one standard uncertainty of each shared input (part, point);
+        no row without shared inputs.
     """
 
     own: np.ndarray
@@ -38,11 +38,11 @@ class PointErrors(NamedTuple):
         return PointErrors(self.own[which], self.shared[:, which])
 
     def with_part(self, part: np.ndarray) -> PointErrors:
-        """Return the errors with one more part that all points share (point), or with several."""
+        """Return the errors with one or more additional shared parts (point) or (part, point)."""
         return PointErrors(self.own, np.vstack([self.shared, part]))
 
     def whitened(self, values: np.ndarray) -> np.ndarray:
-        """Return values in units of their errors, and independent of each other.
+        """Return values in units of their errors, decorrelated by the Cholesky factor.
 
         Parameters
         ----------
@@ -51,8 +51,7 @@ class PointErrors(NamedTuple):
 
         Notes
         -----
-        ``L^-1 x`` with ``L L^T`` the covariance: sums of squares of these are
-        ``x^T C^-1 x``.
+        ``L^-1 x`` with ``L L^T`` the covariance: the sum of squares is ``x^T C^-1 x``.
 
         Examples
         --------
@@ -75,7 +74,7 @@ def shared_errors(measured: xr.Dataset, speed: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     measured
-        A measured curve; one without parts of its uncertainty shares nothing.
+        A measured curve; without parts of its uncertainty, nothing is shared.
     speed
         Speeds of the points [m/s] (sliding_speed).
     """

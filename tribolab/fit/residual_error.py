@@ -1,4 +1,4 @@
-"""How far a fit may lie off when the errors of neighbouring points go together."""
+"""Error of a fit if the errors of neighbouring points are correlated."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from tribolab.friction.statistics import NORMAL
 
 _CORRELATION_GRID = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
 _GROWTH_GRID = 1.35 ** np.arange(18)
-# What is thought of the points' errors before the residuals are seen: that they are right with
-# 90 %, and then that neighbours are independent with 50 %; errors that are too small mostly leave
-# out what the points of a run have in common, so that there neighbours are independent with 10 %.
-# A correlation of 0.5 hardly shows in 13 residuals, of which the fit takes the slow part, and yet
-# makes the error 1.6 times as large: were independence thought more likely, it would be believed.
-# Chosen on simulated curves of 13 speeds so that 95 % intervals hold for independent as for
-# correlated errors of the stated size (tests/benchmarks/shear_stress_coverage.py).
+# Prior of the points' errors: the stated sizes are right with 90 % probability, and neighbours are
+# then independent with 50 %. Errors that are too small mostly neglect what the points of a run have
+# in common: then neighbours are independent with 10 %. A correlation of 0.5 is hardly visible in 13
+# residuals, whose slow part the fit removes, but increases the error by a factor of 1.6: a higher
+# prior of independence would dominate. Chosen on simulated curves of 13 speeds for 95 % coverage
+# with independent and correlated errors of the stated size
+# (tests/benchmarks/shear_stress_coverage.py).
 _INDEPENDENCE_PRIORS = (0.5, 2.0), (0.1, 8.0)
 
 
 class ResidualError(NamedTuple):
-    """Error of a fit's first parameter, with the residuals' correlation taken into account.
+    """Error of a fit's first parameter, with correlated residuals taken into account.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ class ResidualError(NamedTuple):
     half_interval
         Half the 95 % interval.
     correlation
-        Of the errors of neighbouring points [1], as the residuals tell it.
+        Estimated correlation of the errors of neighbouring points [1].
     growth
-        Factor on the points' errors [1], likewise.
+        Estimated factor on the points' errors [1].
     """
 
     error: float
@@ -55,24 +55,23 @@ def residual_error(
     Parameters
     ----------
     residual
-        Measured less fitted (point).
+        Measured minus fitted (point).
     jacobian
         Derivatives of the fitted values by the parameters (point, parameter).
     error
         Standard errors of the points (point).
     place
-        Where the points lie (point), increasing: neighbours are a median spacing apart.
+        Increasing positions of the points (point); the median spacing is that of neighbours.
     known
-        Whether `error` is known beforehand; else only its ratios count.
+        Whether the size of `error` is known; else only ratios are used.
 
     Notes
     -----
     Covariance of the points ``s^2 e_i e_j rho^(|x_i - x_j|/d)``, with d the median spacing, on a
-    grid of rho and s >= 1 (any s where the errors are not known). The grid's points are weighted
-    by their restricted likelihood, ``|V|^-1/2 |J' V^-1 J|^-1/2 exp(-r' Q r/2)``, times what is
-    thought of them beforehand. The estimate stays that of the points' own weights; its standard
-    error under each V is averaged. Where s is 1 the errors are known and the normal quantile holds,
-    else that of Student's t.
+    grid of rho and s >= 1 (any s if the errors are unknown). The grid points are weighted by their
+    restricted likelihood, ``|V|^-1/2 |J' V^-1 J|^-1/2 exp(-r' Q r/2)``, times their prior. The
+    estimate is that with the points' own weights; its standard error under each V is averaged. For
+    s = 1 the errors are known and the normal quantile is used, else Student's t.
 
     Examples
     --------
@@ -86,7 +85,7 @@ def residual_error(
     """
     scaled, jac = residual / error, jacobian / error[:, None]
     size = np.linalg.norm(jac, axis=0)
-    jac = jac / size  # well conditioned
+    jac = jac / size  # for a well conditioned matrix
     apart = np.abs(place[:, None] - place)
     freedom = residual.size - jac.shape[1]
     growth = _GROWTH_GRID if known else np.concatenate([1 / _GROWTH_GRID[:0:-1], _GROWTH_GRID])
@@ -121,7 +120,7 @@ def residual_error(
 
 
 def _prior(growth: np.ndarray, known: bool) -> np.ndarray:
-    """Weight of each correlation and growth before anything is measured (correlation, growth)."""
+    """Return the prior weight of each correlation and growth (correlation, growth)."""
     by_correlation = []
     for independent, power in _INDEPENDENCE_PRIORS:
         some = np.where(_CORRELATION_GRID > 0, _CORRELATION_GRID**power, 0.0)

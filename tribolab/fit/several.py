@@ -51,7 +51,7 @@ class ShearStressFits(Conditions[ShearStressFit]):
         return xr.Dataset(numbers, self.results.coords)
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return the same as a table with a row for each condition that was measured."""
+        """Return a table with a row for each measured condition."""
         table = self.to_dataset().to_dataframe()
         return table.dropna(how="all", subset=["shear_stress"])
 
@@ -67,7 +67,7 @@ class ShearStressFits(Conditions[ShearStressFit]):
         return merged.reindex(order)
 
     def _repr_html_(self) -> str:
-        """Shear stress, error and fit of each condition in a row; all numbers folded away."""
+        """Return a table of shear stress, error and fit by condition; all numbers folded away."""
         rows = "".join(
             f"<tr><th>{labels_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} MPa</td>"
             f"<td>{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
@@ -96,14 +96,14 @@ def fit_shear_stresses(
     Parameters
     ----------
     measured
-        Measured curves over further dims beside ``sliding_speed``, as `measured_stribeck_curve`
-        with labels gives them, or `tribolab.read_results` of a folder (``.curves()``).
+        Measured curves over ``sliding_speed`` and further dims, from `measured_stribeck_curve` with
+        labels, or `tribolab.read_results` of a folder (``.curves()``).
     contact
         As for `fit_shear_stress`.
     psd, viscosity, load, **options
-        As for `fit_shear_stress`, and the fields of `FitSettings`; what is another for each
-        condition has that dim, e.g. spectra
-        over ``surface``, or a load [N/m] over ``normal_force``.
+        As for `fit_shear_stress`, and the fields of `FitSettings`; arguments that differ between
+        conditions have their dim, e.g. spectra over ``surface``, or a load [N/m] over
+        ``normal_force``.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def fit_shear_stresses(
     Raises
     ------
     AnalysisError
-        If a fit is not possible; the condition is named.
+        If a fit is not possible, with the condition.
 
     Examples
     --------
@@ -131,7 +131,7 @@ def fit_shear_stresses(
     """
     given: Arguments = {"measured": measured, "psd": psd, "viscosity": viscosity, "load": load}
     given |= options
-    coords = _further(given)
+    coords = _further_dims(given)
     if not coords:
         raise AnalysisError(
             "measured: there is one curve, and no further dim",
@@ -140,7 +140,7 @@ def fit_shear_stresses(
         )
 
     def fitted(labels: ConditionLabels) -> ShearStressFit | None:
-        mine = {name: _cut(value, labels) for name, value in given.items()}
+        mine = {name: _select_condition(value, labels) for name, value in given.items()}
         if not bool(np.isfinite(mine["measured"]["friction_coefficient"]).any()):
             return None
         if fields := {name: mine.pop(name) for name in SETTINGS if name in mine}:
@@ -153,27 +153,27 @@ def fit_shear_stresses(
     return ShearStressFits.of(coords, fitted)
 
 
-def _further(given: Mapping[str, object]) -> dict[Hashable, Any]:
-    """Return the dims beyond those of one curve, with their labels, those of the curves first."""
+def _further_dims(given: Mapping[str, object]) -> dict[Hashable, Any]:
+    """Return the dims beyond those of one curve with their labels, those of the curves first."""
     coords: dict[Hashable, Any] = {}
     for value in given.values():
-        holder = _holder(value)
+        holder = _main_variable(value)
         for dim in getattr(holder, "dims", ()):
             if dim not in _OWN and dim not in coords:
                 coords[dim] = labels_along(holder, dim)
     return coords
 
 
-def _holder(value: Any) -> Any:
-    """Return the variable of a dataset that tells what it is over."""
+def _main_variable(value: Any) -> Any:
+    """Return the variable of a dataset whose dims are used, or the argument itself."""
     for name in ("friction_coefficient", "psd_2d"):
         if name in getattr(value, "data_vars", ()):
             return value[name]
     return value
 
 
-def _cut(value: Any, labels: Mapping[Hashable, Any]) -> Any:
-    """Return what belongs to one condition of an argument."""
+def _select_condition(value: Any, labels: Mapping[Hashable, Any]) -> Any:
+    """Return the part of an argument that belongs to one condition."""
     mine = {dim: label for dim, label in labels.items() if dim in getattr(value, "dims", ())}
     for dim, label in mine.items():
         try:

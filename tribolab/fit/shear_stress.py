@@ -1,4 +1,4 @@
-"""The shear stress in the real contact, from a measured Stribeck curve and the computed one."""
+"""Shear stress in the real contact, from a measured Stribeck curve and the computed one."""
 
 from __future__ import annotations
 
@@ -33,9 +33,11 @@ from tribolab.lubrication.stribeck import with_shear_stress
 from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
-_MIN_CONTACT_AREA = 1e-19  # m2, contact area under which the bodies do not touch
-_LN_STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
-_Computed = Callable[[np.ndarray], xr.Dataset]  # the curve for logarithms of the free parameters
+_MIN_CONTACT_AREA = 1e-19  # m2, contact area below which the bodies do not touch
+_LN_STEP = 1e-2  # of ln viscosity and ln modulus, for derivatives
+_Computed = Callable[
+    [np.ndarray], xr.Dataset
+]  # computes the curve for logarithms of the free parameters
 
 
 @renamed(viscosity="liquid")
@@ -55,15 +57,15 @@ def fit_shear_stress(
     Parameters
     ----------
     measured
-        ``friction_coefficient`` (sliding_speed) with ``_sem`` or, failing that, ``_std``. Points
-        that are not finite are left out, as is speed 0. The segments of one run, as
-        `friction_coefficient` returns them, are combined by `measured_stribeck_curve` first. Parts
-        of the uncertainty that the points share (``uncertainty_part``, from
-        `tribolab.uncertainty_budget`) are taken for such.
+        ``friction_coefficient`` (sliding_speed) with ``_sem`` or else ``_std``. Points that are not
+        finite, or at speed 0, are left out. The segments of one run, as `friction_coefficient`
+        returns them, are combined by `measured_stribeck_curve` first. Parts of the uncertainty that
+        the points share (``uncertainty_part``, from `tribolab.uncertainty_budget`) are treated as
+        shared.
     contact, psd, liquid, load, interface, solver
-        As for `stribeck_curve`, with one load; the shear stress of the interface does not count.
+        As for `stribeck_curve`, with one load; the shear stress of the interface is ignored.
     settings
-        `FitSettings`; None fits sigma_f alone to all points.
+        `FitSettings`; None fits only sigma_f to all points.
     **options
         Single fields of these objects, as they were arguments in the last release.
 
@@ -80,19 +82,18 @@ def fit_shear_stress(
     -----
     Since ``mu = mu_fluid + sigma_f a`` with a = int (A/A0) dx/(F_N/L), sigma_f is a weighted linear
     regression: ``sum w a (mu - mu_fluid) / sum w a^2``, ``error = 1/sqrt(sum w a^2)`` with w the
-    points' 1/error^2. A point whose error is unknown or 0 gets the median of the others; if none
-    is known, weights are equal, the error comes from the scatter, and chi-square says nothing.
-    An error that all points share cannot be averaged away. It does not move the estimate; it moves
-    sigma_f by ``common_error`` times the response of the regression to ``mu``, which is added.
-    What the points share by their calibration, by the abscissa, and by load, radius and modulus of
-    the model beside them, is in their covariance, ``C = diag(e^2) + sum c c^T u^2`` with ``c =
-    d mu/d ln(viscosity v)`` for the abscissa (`PointErrors`), its diagonal in
-    ``friction_coefficient_residual_u`` of the curve:
-    regression, chi-square and the error of sigma_f are those of generalised least squares.
-    The errors of neighbouring speeds may go together, since a run's level wanders: how much is
-    told by the residuals, and the error bar grows with it (`residual_error`).
-    The runs test is that of Wald and Wolfowitz [1]_, exact and one-sided; the ratio is
-    Birge's [2]_.
+    points' 1/error^2. A point whose error is unknown or 0 gets the median of the others; if none is
+    known, weights are equal, the error comes from the scatter, and chi-square contains no
+    information. An error common to all points does not average out. It does not change the
+    estimate; its contribution to the error of sigma_f, ``common_error`` times the response of the
+    regression to ``mu``, is added. Errors shared through calibration, abscissa, and load, radius
+    and modulus of the model are in the covariance of the points, ``C = diag(e^2) + sum c c^T u^2``
+    with ``c = d mu/d ln(viscosity v)`` for the abscissa (`PointErrors`), its diagonal in
+    ``friction_coefficient_residual_u`` of the curve: regression, chi-square and the error of
+    sigma_f are those of generalised least squares. The errors of neighbouring speeds may be
+    correlated, because a run's level drifts: the correlation is estimated from the residuals and
+    increases the error bar (`residual_error`). The runs test is that of Wald and Wolfowitz [1]_,
+    exact and one-sided; the ratio is Birge's [2]_.
 
     References
     ----------
@@ -143,7 +144,7 @@ def fit_shear_stress(
             function="fit_shear_stress",
         )
     if free:
-        best = _profiled(computed, start, mu[used], errors.at(used), used)
+        best = _fit_free(computed, start, mu[used], errors.at(used), used)
         model_curve = computed(best)
     fluid, area = _parts(model_curve)
     area = np.where(area > least, area, 0.0)
@@ -152,8 +153,8 @@ def fit_shear_stress(
     moved = _moved_by_model(dense, stress, speed, settings.abscissa_error, inputs, free)
     if moved.size:
         errors = errors.with_part(moved)
-        if free:  # the least squares are those of the whole covariance
-            best = _profiled(computed, best, mu[used], errors.at(used), used)
+        if free:  # least squares with the full covariance
+            best = _fit_free(computed, best, mu[used], errors.at(used), used)
             model_curve = computed(best)
             fluid, area = _parts(model_curve)
             area = np.where(area > least, area, 0.0)
@@ -210,7 +211,7 @@ def fit_shear_stress(
 
 
 def runs_p_value(residual: np.ndarray) -> float:
-    """Probability of so few runs of one sign or fewer, if the signs were in random order.
+    """Return the probability of at most so many sign runs for random order of the signs.
 
     Examples
     --------
@@ -220,7 +221,7 @@ def runs_p_value(residual: np.ndarray) -> float:
     sign = residual[residual != 0] > 0
     plus, minus = int(sign.sum()), int((~sign).sum())
     if plus == 0 or minus == 0:
-        return 1.0  # one sign throughout says nothing of their order
+        return 1.0  # a single sign contains no information on their order
     seen = 1 + int(np.count_nonzero(sign[1:] != sign[:-1]))
     ways = 0.0
     for runs in range(2, seen + 1):
@@ -234,12 +235,12 @@ def runs_p_value(residual: np.ndarray) -> float:
 
 
 def _over_speed(measured: xr.Dataset) -> xr.Dataset:
-    """Return the measured curve in the order of its speeds; of segments, what they make.
+    """Return a measured curve sorted by speed; segments are combined to a curve first.
 
     Raises
     ------
     AnalysisError
-        If it is no curve over sliding speeds.
+        If `measured` is not a curve over sliding speeds.
     """
     given = measured.get("friction_coefficient")
     if given is not None and given.dims == ("segment",):
@@ -263,7 +264,7 @@ def _over_speed(measured: xr.Dataset) -> xr.Dataset:
 def _points(
     measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
-    """Speeds, friction, errors, which to use, and where the errors come from."""
+    """Return speeds, friction, errors, mask of used points, and the source of the errors."""
     speed = measured["sliding_speed"].values.astype(float)
     mu = measured["friction_coefficient"].values.astype(float)
     if speed_range is None:
@@ -294,7 +295,7 @@ def _points(
 
 
 def _parts(curve: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Friction of the fluid, and what sigma_f is multiplied with."""
+    """Return the friction of the fluid, and the factor of sigma_f."""
     return curve["friction_coefficient"].values, curve["friction_per_shear_stress"].values
 
 
@@ -304,7 +305,7 @@ def _regression(mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, errors: Poi
 
 
 def _slope(curve: xr.Dataset, stress: float, speed: np.ndarray) -> np.ndarray:
-    """Return d mu/d ln v of the computed curve at speeds; viscosity acts as the speed does."""
+    """Return d mu/d ln v of the computed curve at speeds; viscosity acts as speed does."""
     fluid, area = _parts(curve)
     place = np.log(curve["sliding_speed"].values)
     return np.interp(np.log(speed), place, np.gradient(fluid + stress * area, place))
@@ -318,7 +319,7 @@ def _moved_by_model(
     inputs: xr.Dataset | None,
     free: Sequence[str],
 ) -> np.ndarray:
-    """Return what the errors of the model's own inputs make of friction (part, speed)."""
+    """Return the changes of friction due to errors of the model inputs (part, speed)."""
     rows = np.zeros((0, speed.size))
     if abscissa_error > 0 and "viscosity" not in free:
         rows = np.vstack([rows, abscissa_error * _slope(curve, stress, speed)])
@@ -328,10 +329,10 @@ def _moved_by_model(
     return rows
 
 
-def _profiled(
+def _fit_free(
     computed: _Computed, start: np.ndarray, mu: np.ndarray, errors: PointErrors, used: np.ndarray
 ) -> np.ndarray:
-    """Logarithms of the free parameters at the least squares; sigma_f follows from each."""
+    """Return the least-squares logarithms of the free parameters; sigma_f follows from each."""
 
     def residual(extra: np.ndarray) -> np.ndarray:
         fluid, area = (part[used] for part in _parts(computed(extra)))
@@ -349,7 +350,7 @@ def _profiled(
 def _jacobian(
     computed: _Computed, best: np.ndarray, stress: float, area: np.ndarray, used: np.ndarray
 ) -> np.ndarray:
-    """Return the derivatives of mu over sigma_f and over the logarithms of the free parameters."""
+    """Return the derivatives of mu by sigma_f and by the logarithms of the free parameters."""
     columns = [area[used]]
     for step in _LN_STEP * np.eye(best.size):
         above, below = (
@@ -361,7 +362,7 @@ def _jacobian(
 
 
 def _covariance(weighted: np.ndarray, extra: np.ndarray) -> np.ndarray:
-    """Inverse of the normal matrix in SI; columns are scaled so that it is well conditioned."""
+    """Return the inverse of the normal matrix in SI, from scaled, well conditioned columns."""
     size = np.linalg.norm(weighted, axis=0)
     inverse = np.linalg.pinv(weighted / size)
     scale = np.append(1.0, extra) / size
@@ -375,7 +376,7 @@ def _valid_range(
     area: np.ndarray,
     errors: PointErrors,
 ) -> tuple[float, float]:
-    """Find the widest range in ln v, of neighbouring speeds, that one sigma_f describes."""
+    """Return the widest range in ln v, of neighbouring speeds, that one sigma_f describes."""
     best, widest = (np.nan, np.nan), 0.0
     for first in range(speed.size):
         for stop in range(first + limits.MIN_SPEEDS_OF_RANGE.value, speed.size + 1):

@@ -1,4 +1,4 @@
-"""What a fit of the shear stress found, and how well it is known."""
+"""Result of a fit of the shear stress, with its uncertainty."""
 
 from __future__ import annotations
 
@@ -12,53 +12,53 @@ from scipy import special
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.fit import limits
 
-_UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of what may be fitted besides
+_UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of additional free parameters
 
 
 @dataclass(frozen=True, eq=False)
 class ShearStressFit:
-    """A fitted shear stress, how well it fits, and the curve that goes with it.
+    """A fitted shear stress, its goodness of fit, and the fitted curve.
 
     Parameters
     ----------
     shear_stress
-        sigma_f [Pa], effective: for the contact area without adhesion.
+        Effective sigma_f [Pa], for the contact area without adhesion.
     shear_stress_error
-        Its standard error [Pa] from those of the measured points.
+        Standard error [Pa] from the errors of the measured points.
     shear_stress_error_inflated
-        The same with what the residuals tell of the points' errors: whether they are too small by
-        one factor, and whether those of neighbouring speeds go together (see `residual_error`).
+        The same, enlarged if the residuals exceed the points' errors or are correlated between
+        neighbouring speeds (see `residual_error`).
     scatter_half_interval
-        Half the 95 % interval [Pa] that belongs to it.
+        Half the corresponding 95 % interval [Pa].
     residual_correlation
-        Correlation [1] of the errors of neighbouring speeds, as the residuals tell it.
+        Correlation [1] of the errors of neighbouring speeds, estimated from the residuals.
     chi_square, degrees_of_freedom, chi_square_p_value
-        Of the residuals.
+        Chi-square test of the residuals.
     birge_ratio
         sqrt(chi_square/degrees_of_freedom).
     runs_p_value
-        Probability of so few changes of the residuals' sign by chance; small means that the
+        Probability of so few changes of the residuals' sign by chance; a small value means that the
         measured curve has another shape.
     valid_speed_range
         Ends [m/s] of the widest range of speeds that one sigma_f describes (chi-square's
-        probability above 0.01 when fitted alone); NaN if none of four speeds or more does.
+        probability above 0.01 when fitted alone); NaN without such a range of at least four speeds.
     common_error
-        The part [Pa] of the standard error that all points have in common, such as the level of
-        the runs; not in `shear_stress_error`.
+        Standard error [Pa] common to all points, e.g. from the level of the runs; not included in
+        `shear_stress_error`.
     common_freedom
-        Degrees of freedom from which that part is known.
+        Degrees of freedom of `common_error`.
     area_enhancement, area_enhancement_error
         Real contact area with adhesion over that without [1], as given.
     curve
         The computed curve at the measured speeds, with ``friction_coefficient_residual`` [1]
-        (measured less computed; NaN where nothing was measured) and ``used``.
+        (measured minus computed; NaN without a measurement) and ``used``.
     error_from
-        Where the points' errors come from: "sem", "std" or "scatter".
+        Source of the points' errors: "sem", "std" or "scatter".
     spectrum_error
-        Relative changes [1] of sigma_f, down (not above 0) and up, that an uncertain spectrum
-        may make, from `shear_stress_shift`; None if it is not known.
+        Relative changes [1] of sigma_f, down (not above 0) and up, due to an uncertain spectrum,
+        from `shear_stress_shift`; None if unknown.
     spectrum_scanned
-        Whether the spectrum was measured, so that its error counts.
+        Whether the spectrum was measured, so that its error is included.
     parameters, covariance
         Names and values of all free parameters in SI, sigma_f first, and their covariance.
     """
@@ -87,28 +87,27 @@ class ShearStressFit:
 
     @property
     def total_error(self) -> float:
-        """Standard error [Pa] but for the spectrum's: the points' scatter and what they share."""
+        """Standard error [Pa] from scatter and shared errors, without the spectrum's."""
         return float(np.hypot(self.shear_stress_error_inflated, self.common_error))
 
     @property
     def statistical_half_interval(self) -> float:
-        """Half the 95 % interval of sigma_f [Pa] for the spectrum as it is given.
+        """Half the 95 % interval of sigma_f [Pa] for the given spectrum.
 
-        Two parts in quadrature: that of the points, and the common error with the Student's t of
-        its own degrees of freedom; known from two runs alone, which may agree by chance, it counts
-        with the t of one degree of freedom.
+        Two parts in quadrature: that of the points, and the common error times Student's t of its
+        own degrees of freedom (one for two runs, which may agree by chance).
         """
         t = special.stdtrit(max(self.common_freedom, 1.0), 0.975)
         return float(np.hypot(self.scatter_half_interval, t * self.common_error))
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Ends of the 95 % interval of sigma_f [Pa], with the spectrum's error if it was measured.
+        """Ends of the 95 % interval of sigma_f [Pa], with the error of a measured spectrum.
 
         Raises
         ------
         AnalysisError
-            If the spectrum was measured and its error is not known.
+            If the spectrum was measured and its error is unknown.
         """
         if self.spectrum_scanned and self.spectrum_error is None:
             raise AnalysisError(
@@ -125,12 +124,12 @@ class ShearStressFit:
 
     @property
     def half_interval(self) -> float:
-        """Half the 95 % interval of sigma_f [Pa], to its farther end; see `interval`."""
+        """Half the 95 % interval of sigma_f [Pa], to its more distant end; see `interval`."""
         return float(np.max(np.abs(np.array(self.interval) - self.shear_stress)))
 
     @property
     def interval_says(self) -> str:
-        """What the 95 % interval holds, and which quantile was taken, in words."""
+        """Contents of the 95 % interval and its quantile, in words."""
         return interval_words(
             self.common_error > 0,
             self.common_freedom,
@@ -141,7 +140,7 @@ class ShearStressFit:
 
     @property
     def corrected_shear_stress(self) -> float:
-        """Shear stress [Pa] in the area that adhesion makes: sigma_f / area_enhancement."""
+        """Shear stress [Pa] in the contact area with adhesion: sigma_f / area_enhancement."""
         return self.shear_stress / self.area_enhancement
 
     @property
@@ -153,11 +152,10 @@ class ShearStressFit:
         )
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return what was found as a table: ``value``, ``unit`` and ``meaning`` by name.
+        """Return the results as a table: ``value``, ``unit`` and ``meaning`` by name.
 
-        ``interval_low`` and ``interval_high`` are the ends of the 95 % interval. Where the error
-        of the spectrum is not known there is no such interval, and half the statistical one stands
-        there instead.
+        ``interval_low`` and ``interval_high`` are the ends of the 95 % interval. If the error of
+        the spectrum is unknown, half the statistical interval is given instead.
         """
         half = self.statistical_half_interval
         if self.spectrum_scanned and self.spectrum_error is None:
@@ -195,7 +193,7 @@ class ShearStressFit:
         return pd.DataFrame(rows, columns=columns).set_index("name")
 
     def _repr_html_(self) -> str:
-        """Shear stress, error and fit in a sentence each; everything else folded away."""
+        """Return sentences on shear stress, error and fit; everything else folded away."""
         stress, error = 1e-6 * self.shear_stress, 1e-6 * self.total_error
         without = "" if self.common_error else ", statistical only"
         if self.spectrum_scanned and self.spectrum_error is None:
@@ -215,7 +213,7 @@ class ShearStressFit:
 def interval_words(
     shared: bool, common_freedom: float, error_from: str, freedom: int, correlation: float
 ) -> str:
-    """Say which quantiles a 95 % interval of sigma_f was made with, and of what.
+    """Return a text on the quantiles and contributions of a 95 % interval of sigma_f.
 
     Examples
     --------

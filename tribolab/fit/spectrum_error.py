@@ -1,4 +1,4 @@
-"""What an uncertain spectrum does to a fitted shear stress: repeats do not help."""
+"""Error of a fitted shear stress due to an uncertain spectrum, which repeats do not reduce."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SPECTRUM = (
 
 
 def shear_stress_shift(uncertainty: xr.Dataset) -> tuple[float, float]:
-    """Return how far a fitted sigma_f may lie off, down and up, as the spectrum is not known.
+    """Return the possible errors of a fitted sigma_f, down and up, due to an uncertain spectrum.
 
     Parameters
     ----------
@@ -24,8 +24,8 @@ def shear_stress_shift(uncertainty: xr.Dataset) -> tuple[float, float]:
     Returns
     -------
     tuple
-        Relative changes [1] of sigma_f, not above and not below 0: those that lower it and those
-        that raise it, each in quadrature, as the band of the curve.
+        Relative changes [1] of sigma_f, the first not above and the second not below 0, each
+        combined in quadrature, as in the band of the curve.
     """
     mine = uncertainty.sel(variation=[n for n in uncertainty.variation.values if n in SPECTRUM])
     ends = np.nan_to_num(

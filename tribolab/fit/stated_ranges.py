@@ -1,4 +1,4 @@
-"""Inputs of a mixed-lubrication model that are varied over the ranges that are stated of them."""
+"""Inputs of a mixed-lubrication model that are varied over their stated ranges."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from tribolab.fit.variation import Base, Changed, Skipped, Variation
 
 @dataclass(frozen=True)
 class StatedRange:
-    """An input of the model that is varied over the range that is stated of it.
+    """An input of the model that is varied over its stated range.
 
     Parameters
     ----------
     name, argument
-        What a reader calls it; of `model_uncertainty` the argument with ``_range`` behind it.
+        Displayed name; argument of `model_uncertainty` without ``_range``.
     reason
-        On what it hangs.
+        Reason for the variation.
     shown
-        The end of a range in words.
+        Function: end of the range -> text.
     changed
-        What an end changes.
+        Function: end of the range -> changed arguments.
     """
 
     name: str
@@ -31,7 +31,7 @@ class StatedRange:
     changed: Callable[[Base, float], Changed]
 
     def __call__(self, base: Base) -> Variation | Skipped:
-        """Vary the input over the range that is stated."""
+        """Vary the input over its stated range."""
         ends = getattr(base, f"{self.argument}_range")
         if ends is None:
             return Skipped(self.name, f"no {self.argument}_range was given")

@@ -1,4 +1,4 @@
-"""What is not known of a model, as a frozen object."""
+"""Unknowns of a model, as a frozen object."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ Range = tuple[str | float, str | float]
 
 @dataclass(frozen=True)
 class Unknowns:
-    """What a band on a computed curve takes as uncertain beside the theory itself.
+    """Uncertain inputs of the band on a computed curve, in addition to the theory.
 
     Parameters
     ----------
     viscosity, youngs_modulus, load, radius, work_of_adhesion
-        Ends of what the liquid's viscosity [Pa s], the contact's modulus [Pa], the load [N/m, of
-        a ball N], the radius [m] and the work of adhesion [J/m2] may be, some 95 %; None leaves
-        each out.
+        Ranges, some 95 % coverage, of viscosity [Pa s], modulus [Pa], load [N/m; N for a ball],
+        radius [m] and work of adhesion [J/m2]; None leaves an input out.
     shear_stress_error
         Standard error [Pa] of sigma_f; None leaves it out.
     measured_to
-        Wavenumber [1/m] above which the spectrum is a guess, where ``origin`` does not say.
+        Wavenumber [1/m] above which the spectrum is extrapolated, if ``origin`` does not state
+        this.
     outlet
-        Whether a vented outlet may be flooded; a liquid that is stated to be flooded is.
+        Whether a vented outlet may be flooded; an outlet stated as flooded is not varied.
 
     Examples
     --------
@@ -47,7 +47,7 @@ class Unknowns:
     outlet: bool = True
 
     def __post_init__(self) -> None:
-        """Turn text into SI floats and refuse what is not possible."""
+        """Convert text to SI floats and raise an error for impossible values."""
         if self.measured_to is not None:
             known = positive(self.measured_to, "1/m", "measured_to")
             object.__setattr__(self, "measured_to", known)
@@ -67,7 +67,7 @@ _NAMES = {field.name for field in fields(Unknowns)}
 def merge_old_options(
     unknowns: Unknowns | None, options: Mapping[str, Any]
 ) -> tuple[Unknowns, dict[str, Any]]:
-    """Return the unknowns with what was an argument in the last release, and all other options.
+    """Return the unknowns including arguments of the last release, and all other options.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def merge_old_options(
         field = name.removesuffix("_range")
         if field in _NAMES and (name != field or field in ("shear_stress_error", "measured_to")):
             found[field] = left.pop(name)
-    if "outlet" in left:  # None was vented or flooded, not known which
+    if "outlet" in left:  # None meant: vented or flooded, unknown which
         found["outlet"] = left["outlet"] is None
         if left["outlet"] is None:
             del left["outlet"]

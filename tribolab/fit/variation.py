@@ -1,4 +1,4 @@
-"""One unknown of a mixed-lubrication model, the ends of its range, and the model that is varied."""
+"""One unknown of a mixed-lubrication model, the ends of its range, and the varied model."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ class Base(NamedTuple):
     rough_body: RoughBody
     friction_factors: bool
     gamma: float
-    measured_to: float | None  # wavenumber [1/m] above which the spectrum is a guess
+    measured_to: float | None  # wavenumber [1/m] above which the spectrum is extrapolated
     contact: Contact
     load: float  # [N/m]
     viscosity: float  # [Pa s]
-    viscosity_range: tuple[float, float] | None  # None if it is not known
+    viscosity_range: tuple[float, float] | None  # None if unknown
     youngs_modulus_range: tuple[float, float] | None
-    inlet_length: float  # [m], infinite if nothing is stated
+    inlet_length: float  # [m], infinite if not stated
     area: AreaTheory
     work_of_adhesion: float | None = None  # [J/m2], None if the model is without adhesion
     work_of_adhesion_range: tuple[float, float] | None = None
     load_range: tuple[float, float] | None = None
     radius_range: tuple[float, float] | None = None
-    outlet: str = "unknown"  # or what is stated of it
+    outlet: str = "unknown"  # or the stated outlet
 
     @property
     def spectrum(self) -> xr.Dataset:
         """The spectrum of a rough surface."""
-        assert self.psd is not None  # what is `OF_ROUGHNESS` is varied of rough surfaces alone
+        assert self.psd is not None  # variations of roughness are made only for rough surfaces
         return self.psd
 
 
@@ -62,12 +62,12 @@ class Variation(NamedTuple):
 
     name: str
     reason: str
-    texts: tuple[str, str]  # of the low and the high end; empty where there is only one
+    texts: tuple[str, str]  # of the low and the high end; empty for a missing end
     ends: tuple[Changed | None, Changed | None]
 
 
 class Skipped(NamedTuple):
-    """An unknown that cannot be varied here, and why."""
+    """An unknown that cannot be varied, with the reason."""
 
     name: str
     reason: str

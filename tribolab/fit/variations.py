@@ -1,4 +1,4 @@
-"""What is not known of a mixed-lubrication model, one at a time: changed spectra and settings."""
+"""Variations of a mixed-lubrication model, one unknown at a time."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
 
 _LOW_PERCOLATION, _HIGH_PERCOLATION = 0.40, 0.50
-_LIQUID_RADII = 3.0  # radii of a ball: some 30 mm
+_LIQUID_RADII = 3.0  # inlet length in radii of a ball: some 30 mm
 _FILM_CUTOFFS = 0.3e-9, 3e-9
 _OTHER_GAMMA = 0.5
-# What no variation reaches, between any surfaces and between rough ones.
+# Unknowns that are not varied, for all surfaces and for rough ones.
 _FIXED = (
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
     ("cavitation", "the liquid ruptures at one pressure, that outside or of its vapour"),
@@ -47,7 +47,7 @@ _WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures 
 
 
 def percolation(base: Base) -> Variation:
-    """Vary the contact area at which the last channel closes."""
+    """Vary the contact area at which the last flow channel closes."""
     ends = [_factors(base, percolation=value) for value in (_LOW_PERCOLATION, _HIGH_PERCOLATION)]
     return Variation(
         "percolation threshold",
@@ -59,7 +59,7 @@ def percolation(base: Base) -> Variation:
 
 
 def shear_cutoff(base: Base) -> Variation:
-    """Vary the gap under which fluid is not sheared as a continuum."""
+    """Vary the gap below which fluid is not sheared as a continuum."""
     low, high = (_factors(base, cutoff=value) for value in _FILM_CUTOFFS)
     return Variation(
         "cut-off of <1/u>",
@@ -82,7 +82,7 @@ def energy_factor(base: Base) -> Variation | Skipped:
 
 
 def area_theory(base: Base) -> Variation:
-    """Take the other theory of the contact area: Persson's, or the corrected one."""
+    """Use the other theory of the contact area: Persson's, or the corrected one."""
     plain, other = base.area == "persson", alternative_area_theory(base.area)
     return Variation(
         "theory of the contact area",
@@ -94,7 +94,7 @@ def area_theory(base: Base) -> Variation:
 
 
 def rough_body(base: Base) -> Variation:
-    """Take the other body as the rough one: phi_s changes sign."""
+    """Use the other body as the rough one: phi_s changes sign."""
     other: RoughBody = "moving" if base.rough_body == "stationary" else "stationary"
     return Variation(
         "rough body",
@@ -118,7 +118,7 @@ def friction_factors(base: Base) -> Variation:
 
 
 def inlet_length(base: Base) -> Variation | Skipped:
-    """Let the liquid begin where a cylinder ends, and its gap is no parabola any more."""
+    """Start the liquid at the edge of the cylinder, where its gap is no longer parabolic."""
     name = "inlet length"
     if np.isfinite(base.inlet_length):
         return Skipped(name, "it is stated")
@@ -145,7 +145,7 @@ def inlet_length(base: Base) -> Variation | Skipped:
 
 
 def outlet(base: Base) -> Variation | Skipped:
-    """Let no gas into the diverging gap: the liquid behind the contact then holds tension."""
+    """Exclude gas from the diverging gap: the liquid at the outlet then sustains tension."""
     if base.outlet != "unknown":
         return Skipped("outlet", "it is stated")
     return Variation(
@@ -180,7 +180,7 @@ _OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (
 
 
 def variations(base: Base) -> list[Variation | Skipped]:
-    """Return all that can be varied in a model, and what cannot with the reason."""
+    """Return all variations of a model, and unknowns that cannot be varied with the reason."""
     rough = [] if base.psd is None else [make(base) for make in _OF_ROUGHNESS]
     if rough and base.work_of_adhesion is not None:
         rough.append(WORK_OF_ADHESION(base))
@@ -188,7 +188,7 @@ def variations(base: Base) -> list[Variation | Skipped]:
 
 
 def held_fixed(base: Base) -> list[Skipped]:
-    """Return what no variation reaches."""
+    """Return the unknowns that are not varied."""
     fixed = {"geometry and load": _as_stated(base)}
     fixed |= dict(_FIXED if base.psd is None else _FIXED + _FIXED_IF_ROUGH)
     if base.psd is not None and base.work_of_adhesion is not None:
@@ -197,7 +197,7 @@ def held_fixed(base: Base) -> list[Skipped]:
 
 
 def _as_stated(base: Base) -> str:
-    """Say what of geometry and load has no range to be varied in."""
+    """Return a text on geometry and load without a stated range."""
     stated = {
         "radius": base.radius_range is None,
         "length": True,

@@ -1,4 +1,4 @@
-"""What is not known of a spectrum, one at a time: its band, its ends and its tail."""
+"""Variations of a spectrum, one at a time: its band, its ends and its extrapolated tail."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NO_TAIL = (
 
 
 def spectrum_band(base: Base) -> Variation | Skipped:
-    """Move the measured part to the ends of its band, what is extrapolated along with it."""
+    """Move the measured part to the ends of its band, and the extrapolated part with it."""
     psd = base.spectrum
     if "psd_2d_low" not in psd or "psd_2d_high" not in psd:
         return Skipped("spectrum band", "the spectrum has no psd_2d_low and psd_2d_high")
@@ -51,7 +51,7 @@ def spectrum_band(base: Base) -> Variation | Skipped:
 
 
 def long_waves(base: Base) -> Variation | Skipped:
-    """Leave out what was extrapolated to small wavenumbers, or take more of it."""
+    """Omit the extrapolation to small wavenumbers, or extend it."""
     psd, name = base.spectrum, "spectrum at long waves"
     q, c = spectrum_arrays(psd)
     guessed = _origin(psd) == TO_SMALL
@@ -61,7 +61,7 @@ def long_waves(base: Base) -> Variation | Skipped:
     reason, more = "a plateau is assumed there; without it, and twice as high", _PLATEAU_FACTOR
     texts = ["no roughness below", f"{_PLATEAU_FACTOR:g} C"]
     if str(psd.attrs.get("rolloff", "")).startswith("not reached"):
-        # the spectrum still rises where it was last seen: the power law may go on
+        # the spectrum still rises at its lowest wavenumber: the power law may continue
         hurst = float(psd.attrs["hurst_exponent"])
         more = (q[guessed] / first) ** (-2 * (1 + hurst))
         reason = "a plateau is assumed there; without it, and with the power law in its place"
@@ -77,7 +77,7 @@ def long_waves(base: Base) -> Variation | Skipped:
 
 
 def hurst_exponent(base: Base) -> Variation | Skipped:
-    """Tilt what was extrapolated to large wavenumbers about the last measured one."""
+    """Tilt the extrapolation to large wavenumbers about the last measured one."""
     psd = base.spectrum
     q, c = spectrum_arrays(psd)
     last = _measured_to(base)
@@ -99,7 +99,7 @@ def hurst_exponent(base: Base) -> Variation | Skipped:
 
 
 def short_waves(base: Base) -> Variation | Skipped:
-    """End the spectrum at longer waves, or carry it on to the size of an atom."""
+    """End the spectrum at longer waves, or extend it to atomic size."""
     psd, name = base.spectrum, "spectrum at short waves"
     q, c = spectrum_arrays(psd)
     last = _measured_to(base)
@@ -128,7 +128,7 @@ def _origin(psd: xr.Dataset) -> np.ndarray:
 
 
 def _measured_to(base: Base) -> float | None:
-    """Largest wavenumber that was measured, if there is more of the spectrum beyond it."""
+    """Return the largest measured wavenumber if the spectrum extends beyond it; else None."""
     q, _ = spectrum_arrays(base.spectrum)
     if base.measured_to is not None:
         if not q[0] < base.measured_to < q[-1]:
@@ -143,7 +143,7 @@ def _measured_to(base: Base) -> float | None:
 
 
 def _local_exponent(q: np.ndarray, c: np.ndarray) -> float:
-    """Hurst exponent of the power law that the spectrum ends with; NaN if it is no power law."""
+    """Return the Hurst exponent of the spectrum's last power law; NaN if it has none."""
     rough = np.flatnonzero(c)[-2:]
     if rough.size < 2:
         return np.nan

@@ -1,1 +1,1 @@
-"""All loads of a surface in one fit: what friction tells of shear stress and liquid together."""
+"""Joint fit of all loads of a surface: shear stress and viscosity from friction curves."""

@@ -1,4 +1,4 @@
-"""What uncertain spectra, inputs and calibrations do to a joint fit, at all loads alike."""
+"""Effect of uncertain spectra, inputs and calibrations, common to all loads, on a joint fit."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.fit.spectrum_error import SPECTRUM
 from tribolab.friction.statistics import NORMAL
 from tribolab.metrology.budget_curve import shared_parts
 
-_INPUTS = ("load", "radius", "Young's modulus")  # variations that all surfaces share
+_INPUTS = ("load", "radius", "Young's modulus")  # variations common to all surfaces
 
 
 def model_covariance(
@@ -26,12 +26,12 @@ def model_covariance(
     priors: JointPriors,
     uncertainty: Mapping[int, xr.Dataset],
 ) -> np.ndarray:
-    """Return what uncertain spectra and inputs add to the covariance of the parameters.
+    """Return the covariance of the parameters due to uncertain spectra and inputs.
 
     Parameters
     ----------
     model, posterior, priors
-        Of the fit with the spectra as they are.
+        Of the fit with the nominal spectra.
     uncertainty
         From `model_uncertainty` at one load, for each surface's number.
 
@@ -43,20 +43,20 @@ def model_covariance(
     Raises
     ------
     AnalysisError
-        If the band is of another load than those fitted, or of too few speeds.
+        If the band is for a load that is not fitted, or for too few speeds.
 
     Notes
     -----
-    A rougher surface touches in fewer places and parts from the flat at higher speed: it is as if
-    the shear stress were lower and the liquid thinner, at all loads alike. Each end of a variation
-    of the spectrum is therefore told by a shear stress, an exponent of speed and a viscosity:
-    ln(mu varied/mu) over the measured speeds, at the load for which it was computed, is projected
-    on their derivatives. What these do at all loads to the fit is ``Sigma J' V^-1 delta``. The
-    ends are some 95 %, the variations independent of each other, and so are the surfaces' spectra;
-    load, radius and modulus are told alike, and err together on all surfaces.
+    A rougher surface has less contact area and separates at higher speed, as with a lower shear
+    stress and a thinner liquid, at all loads alike. Each end of a variation of the spectrum is
+    therefore expressed by changes of shear stress, exponent of speed and viscosity: ln(mu
+    varied/mu) over the measured speeds, at the load for which it was computed, is projected on
+    their derivatives. Their effect on the fit at all loads is ``Sigma J' V^-1 delta``. The ends
+    have some 95 % coverage; the variations and the spectra of the surfaces are independent of each
+    other. Load, radius and modulus are treated alike, with errors common to all surfaces.
     """
     points, where = model.points, model.parameters
-    slopes, answer = _answer(model, posterior, priors)
+    slopes, answer = _response(model, posterior, priors)
     added = np.zeros((where.spread.size, where.spread.size))
     together: dict[str, np.ndarray] = {}
     for surface, band in uncertainty.items():
@@ -64,7 +64,7 @@ def model_covariance(
         columns = [column for column in columns if where.spread[column] > 0]
         of_surface = np.array([model.curves[k].surface == surface for k in points.curve])
         wet = np.array([not model.curves[k].dry for k in points.curve])
-        for name, ends in _told(model, posterior.centre, surface, columns, band).items():
+        for name, ends in _project(model, posterior.centre, surface, columns, band).items():
             moved = ends @ (slopes[:, columns] * (of_surface & wet)[:, None]).T @ answer.T
             if name in _INPUTS:
                 together[name] = together.get(name, 0.0) + moved
@@ -82,23 +82,23 @@ def calibration_covariance(
     curves: Sequence[LoadCurve],
     speed_error: float = 0.0,
 ) -> np.ndarray:
-    """Return what the calibration that all curves share adds to the covariance of the parameters.
+    """Return the covariance of the parameters due to the calibration shared by all curves.
 
     Parameters
     ----------
     model, posterior, priors
         Of the fit.
     curves
-        Of each measured curve ``uncertainty_part`` counts, from `curve_uncertainty`; parts of
-        one name are one error of all curves.
+        Measured curves with ``uncertainty_part``, from `curve_uncertainty`; parts of equal name are
+        one error of all curves.
     speed_error
-        Relative standard error [1] of all sliding speeds together.
+        Relative standard error [1] common to all sliding speeds.
 
     Returns
     -------
     numpy.ndarray
-        Covariance (parameter, parameter): of each part c of ln mu, ``Sigma J' V^-1 c``. That of
-        the speed is d ln mu/d ln v, which is d ln mu/d ln eta and the exponent's of the stress.
+        Covariance (parameter, parameter): of each part c of ln mu, ``Sigma J' V^-1 c``. For the
+        speed c is d ln mu/d ln v, the sum of d ln mu/d ln eta and the effect of the exponent n.
     """
     points = model.points
     rows: dict[str, np.ndarray] = {}
@@ -106,7 +106,7 @@ def calibration_covariance(
         mine = points.curve == number
         data = curve.measured
         if "run" in data["friction_coefficient"].dims:
-            continue  # parts are told of curves of several runs
+            continue  # parts are given for curves of several runs
         place = np.log(data.get("measured_speed", data["sliding_speed"]).values.astype(float))
         for name, part in shared_parts(data):
             relative = part / data["friction_coefficient"].values
@@ -114,7 +114,7 @@ def calibration_covariance(
             if known.any():
                 row = rows.setdefault(name, np.zeros(points.log_speed.size))
                 row[mine] = np.interp(points.log_speed[mine], place[known], relative[known])
-    slopes, answer = _answer(model, posterior, priors)
+    slopes, answer = _response(model, posterior, priors)
     if speed_error > 0:
         rows["speed"] = speed_error * _over_speed(model, posterior.centre, slopes)
     moved = np.array(list(rows.values())).reshape(-1, points.log_speed.size) @ answer.T
@@ -122,16 +122,16 @@ def calibration_covariance(
 
 
 def _over_speed(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Return d ln mu/d ln v of the points; a dry curve does not hang on the viscosity."""
+    """Return d ln mu/d ln v of the points; a dry curve does not depend on the viscosity."""
     where = model.parameters
     solid = slopes[:, where.stress] @ theta[where.speed]
     return np.asarray(slopes[:, where.viscosity] + solid)
 
 
-def _answer(
+def _response(
     model: JointModel, posterior: Posterior, priors: JointPriors
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return d ln mu/d theta (point, parameter), and what changed points do to the parameters."""
+    """Return d ln mu/d theta (point, parameter), and the parameters' response to the points."""
     weights = posterior.weight
     tau, kappa = weights @ posterior.level, weights @ posterior.correlated
     points, where = model.points, model.parameters
@@ -146,14 +146,14 @@ def _answer(
     return slopes, answer
 
 
-def _told(
+def _project(
     model: JointModel,
     theta: np.ndarray,
     surface: int,
     columns: list[int],
     band: xr.Dataset,
 ) -> dict[str, np.ndarray]:
-    """Return for each variation by name what its ends are told by (end, parameter)."""
+    """Return the change of parameters that represents each variation's ends (end, parameter)."""
     load = float(band.attrs["load_N_m"])
     offs = {
         number: abs(curve.log_load - model.log_reference(load))
@@ -171,7 +171,7 @@ def _told(
     varied = ends_of.transpose("variation", "range_end", "sliding_speed").values
     change = np.log(varied / band["friction_coefficient"].values)
     inside = (log_speed > measured.min() - 0.01) & (log_speed < measured.max() + 0.01)
-    # few speeds, close together: between those of the band
+    # few, closely spaced speeds: interpolate the band between its speeds
     if inside.sum() < limits.MIN_SPEEDS_OF_BAND.value:
         within = (measured > log_speed[0] - 0.01) & (measured < log_speed[-1] + 0.01)
         at = np.clip(measured[within], log_speed[0], log_speed[-1])

@@ -1,4 +1,4 @@
-"""Several models of the same curves held against each other, and which of them the data want."""
+"""Comparison of several models of the same curves by evidence and prediction."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ WITHOUT_FACTORS = "no friction factors"
 
 @dataclass(frozen=True)
 class ComparedModel:
-    """One model beside the reference.
+    """One model compared with the reference.
 
     Parameters
     ----------
     name
-        What it is called.
+        Name of the model.
     evidence
-        ln of the odds for it against the reference, from all points.
+        ln of its odds against the reference, from all points.
     prediction
-        ln of the density with which it predicts the points of each load from all others, summed
-        over the loads, less that of the reference; NaN of one load.
+        ln of the predictive density of each load's points given all others, summed over the loads,
+        minus that of the reference; NaN for one load.
     prediction_error
-        Standard error of that sum, from the spread over the loads; NaN of fewer than three.
+        Standard error of that sum, from the scatter over the loads; NaN for fewer than three.
     shear_stress, shear_stress_low, shear_stress_high
-        sigma_0 [Pa] under the model and its 95 % interval, of the first surface.
+        sigma_0 [Pa] of the first surface under the model, and its 95 % interval.
     words
-        What the data say.
+        Conclusion in words.
     """
 
     name: str
@@ -62,7 +62,7 @@ class ModelComparison:
     Parameters
     ----------
     reference
-        Name of the model that all are held against.
+        Name of the model with which the others are compared.
     models
         In the order given, the reference first.
     fits
@@ -78,7 +78,7 @@ class ModelComparison:
         return pd.DataFrame([vars(model) for model in self.models]).set_index("name")
 
     def _repr_html_(self) -> str:
-        """Odds and words of each model in a row; all numbers folded away."""
+        """Return odds and words of each model as a table; all numbers folded away."""
         rows = "".join(
             f"<tr><th>{model.name}</th><td>{_odds(model.evidence)}</td>"
             f"<td>{_odds(model.prediction)}</td><td>{model.words}</td></tr>"
@@ -101,19 +101,19 @@ def compare_shear_stress_models(
     variants: Mapping[str, Mapping[str, Any]] | None = None,
     **given: Any,
 ) -> ModelComparison:
-    """Fit the curves of all loads under several models, and say which the data want.
+    """Fit the curves of all loads under several models, and compare the models.
 
     Parameters
     ----------
     measured, contact, psd, viscosity, load
         As for `fit_shear_stress_jointly`.
     variants
-        For each model's name what it changes of the arguments of `fit_shear_stress_jointly`, such
-        as ``{"adhesive area": {"area_enhancement": enhancement}}``; the first is the reference. By
-        default one shear stress that is a power of speed and load, a constant one, and no friction
-        factors.
+        Arguments of `fit_shear_stress_jointly` that each model changes, by name, such as
+        ``{"adhesive area": {"area_enhancement": enhancement}}``; the first is the reference. By
+        default a shear stress that is a power law of speed and load, a constant one, and no
+        friction factors.
     **given
-        Further arguments that all share.
+        Further arguments, the same for all models.
 
     Returns
     -------
@@ -122,16 +122,15 @@ def compare_shear_stress_models(
     Raises
     ------
     AnalysisError
-        If a model cannot be fitted; it is named.
+        If a model cannot be fitted, with its name.
 
     Notes
     -----
-    Two tellers, and the more cautious of them is believed: the evidence, which weighs how well a
-    model describes the points against how much it could have described, and which the priors
-    move; and leave-one-out over the loads, ``sum_l ln p(y_l | other loads)``, which asks what a
-    model foretells and is hardly moved by them. Odds of e (2.7) are not worth a mention, of
-    e^3 (20) strong [1]_. Where the two have not the same sign the data do not tell. Of a model with
-    fewer free parameters that is wanted it is said that it is enough.
+    The more conservative of two criteria is used: the evidence, which penalises the flexibility of
+    a model and depends on the priors; and leave-one-out cross-validation over the loads, ``sum_l ln
+    p(y_l | other loads)``, which measures prediction and hardly depends on them. Odds below e (2.7)
+    are no preference, above e^3 (20) strong [1]_. If the two differ in sign the data do not decide.
+    A preferred model with fewer free parameters is called sufficient.
 
     References
     ----------
@@ -167,7 +166,7 @@ def compare_shear_stress_models(
 
 
 def usual_variants(priors: JointPriors) -> dict[str, Arguments]:
-    """Return the models that are compared if nothing else is said."""
+    """Return the default models of a comparison."""
     return {
         POWER_LAW: {"priors": priors},
         CONSTANT: {"priors": replace(priors, speed_exponent=0.0, load_exponent=0.0)},
@@ -176,12 +175,12 @@ def usual_variants(priors: JointPriors) -> dict[str, Arguments]:
 
 
 def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
-    """Hold fits of the same points against the first of them.
+    """Compare fits of the same points with the first of them.
 
     Raises
     ------
     AnalysisError
-        If there is no fit, or they are not of the same points.
+        If there is no fit, or the fits are not of the same points.
     """
     if not fits:
         raise AnalysisError("variants: no model is named")
@@ -200,7 +199,7 @@ def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
         stress = fit.marginals[0]
         said = "the reference"
         if name != reference:
-            said = _said((name, _free(fit)), (reference, _free(first)), evidence, prediction)
+            said = _conclude((name, _free(fit)), (reference, _free(first)), evidence, prediction)
         models.append(
             ComparedModel(
                 name, evidence, prediction, error, stress.value, stress.low, stress.high, said
@@ -210,14 +209,14 @@ def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
 
 
 def _free(fit: JointFit) -> int:
-    """Return how many parameters were not held fixed."""
+    """Return the number of free parameters."""
     return sum(np.isfinite(marginal.told) for marginal in fit.marginals)
 
 
-def _said(
+def _conclude(
     model: tuple[str, int], reference: tuple[str, int], evidence: float, prediction: float
 ) -> str:
-    """Say what the data want, by the more cautious of the two tellers.
+    """Return the conclusion from the more conservative of the two criteria.
 
     Parameters
     ----------
@@ -228,11 +227,11 @@ def _said(
 
     Examples
     --------
-    >>> _said(("b", 4), ("a", 3), 6.0, 4.0), _said(("b", 4), ("a", 3), -2.0, -5.0)
+    >>> _conclude(("b", 4), ("a", 3), 6.0, 4.0), _conclude(("b", 4), ("a", 3), -2.0, -5.0)
     ('the data need b', 'a is enough')
-    >>> _said(("b", 4), ("a", 3), 6.0, -4.0), _said(("b", 3), ("a", 3), 2.0, 6.0)
+    >>> _conclude(("b", 4), ("a", 3), 6.0, -4.0), _conclude(("b", 3), ("a", 3), 2.0, 6.0)
     ('the data do not tell b from a', 'the data lean to b')
-    >>> _said(("b", 2), ("a", 3), -6.0, -4.0), _said(("b", 3), ("a", 3), -2.0, -6.0)
+    >>> _conclude(("b", 2), ("a", 3), -6.0, -4.0), _conclude(("b", 3), ("a", 3), -2.0, -6.0)
     ('the data contradict b', 'the data lean to a')
     """
     tellers = np.array([evidence, prediction])

@@ -1,4 +1,4 @@
-"""The joint fit as it is called: measured curves, contact and spectra in."""
+"""Joint fit from measured curves, contact and spectra."""
 
 from __future__ import annotations
 
@@ -44,32 +44,31 @@ def fit_shear_stress_jointly(
     Parameters
     ----------
     measured
-        ``friction_coefficient`` with ``_sem`` or, failing that, ``_std`` over (sliding_speed), a
-        load dim such as ``normal_force``, for several surfaces (surface) and for runs that were
-        not combined (run). Points whose friction is not above zero are left out.
+        ``friction_coefficient`` with ``_sem`` or else ``_std`` over (sliding_speed), a load dim
+        such as ``normal_force``, (surface) for several surfaces and (run) for runs that were not
+        combined. Points with friction not above zero are left out.
     contact, psd
         As for `stribeck_curve`; spectra of several surfaces over (surface).
     viscosity
-        Of the liquid [Pa s], as stated: the median of its prior.
+        Stated viscosity [Pa s]: the median of its prior.
     load
-        F_N/L [N/m]; of several loads over their dim.
+        F_N/L [N/m]; several loads over their dim.
     priors
-        What is thought of the parameters beforehand.
+        Priors of the parameters.
     speed_range
         Lowest and highest speed [m/s] to take; None for all.
     common_error
-        Relative standard error [1] of the shear stress that all loads share, such as that of the
-        spectrum.
+        Relative standard error [1] of the shear stress common to all loads, e.g. from the spectrum.
     speed_error
-        Relative standard error [1] of the sliding speeds that all points share.
+        Relative standard error [1] of the sliding speeds common to all points.
     area_enhancement
-        Real contact area with adhesion over that without [1]; over the loads or surfaces. With it
-        the shear stress is that in the adhesive area.
+        Real contact area with adhesion over that without [1]; over the loads or surfaces. The shear
+        stress then refers to the adhesive contact area.
     dry
         Friction measured without the liquid.
     curves
-        The computed curves, if they are at hand: `stribeck_curve` of the same system over speeds
-        wide enough, and over the loads (and surfaces).
+        The computed curves, if available: `stribeck_curve` of the same system over a sufficient
+        range of speeds, and over the loads (and surfaces).
     **model
         Further arguments of `stribeck_curve`, such as ``rough_body``.
 
@@ -84,12 +83,12 @@ def fit_shear_stress_jointly(
 
     Notes
     -----
-    ``ln mu_li = ln[f_l(eta v_i) + sigma_0 (v_i/v0)^n (F_l/F0)^m k_l(eta v_i)] + level + r + e``:
-    f and k are the fluid's friction and the real contact area over the load, computed once [1]_,
-    v0 = 10 um/s, F0 the geometric mean of the loads. Level is an error that all points of a load
-    (or run) share, r one that neighbouring speeds share, e that of each point. Beforehand, and
-    with `JointPriors` for the numbers, ln sigma_0, n, m and ln eta are normal, and the sizes of
-    level and r as Rayleigh's. The posterior is a mixture of normals, see `posterior_of`.
+    ``ln mu_li = ln[f_l(eta v_i) + sigma_0 (v_i/v0)^n (F_l/F0)^m k_l(eta v_i)] + level + r + e``: f
+    and k are the fluid's friction and the real contact area over the load, computed once [1]_, v0 =
+    10 um/s, F0 the geometric mean of the loads. "level" is an error common to all points of a load
+    (or run), r an error correlated between neighbouring speeds, e that of each point. The priors
+    (`JointPriors`) are normal for ln sigma_0, n, m and ln eta, and Rayleigh for the sizes of level
+    and r. The posterior is a mixture of normals, see `posterior_of`.
 
     References
     ----------

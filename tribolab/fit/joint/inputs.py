@@ -1,4 +1,4 @@
-"""Arguments of a joint fit taken apart: a curve, its load and what is computed beside it."""
+"""Input of a joint fit: measured curves by surface and load, with their computed responses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.units.stamping import labelled
 
-# standard deviations of ln eta that the computed curves go beyond the speeds
+# range of the computed curves beyond the measured speeds, in standard deviations of ln eta
 _SPREADS_BEYOND_SPEEDS = 4.0
 _SPEEDS_PER_DECADE = 8
 _OWN = ("sliding_speed", "run")
@@ -28,23 +28,23 @@ _OWN = ("sliding_speed", "run")
 
 @dataclass(frozen=True)
 class DryFriction:
-    """Friction measured without the liquid, as what is known of the shear stress beforehand.
+    """Friction measured without the liquid, as prior information on the shear stress.
 
     Parameters
     ----------
     measured
-        As the wet curves, at some of their loads.
+        Dry curves in the form of the wet ones, at some of their loads.
     area_ratio
         Real contact area dry over that in the liquid [1], both with adhesion; over the loads, or
-        one for all.
+        one value for all.
     area_ratio_range
-        Ends of what that ratio may be, some 95 %, from the range of the works of adhesion; by
-        default it is taken as known.
+        Range of that ratio, some 95 % coverage, from the range of the works of adhesion; by default
+        the ratio is exact.
 
     Notes
     -----
-    Adhesion and molecules both change when the liquid comes between. That the shear stress in the
-    real contact is another then is left open by a factor, ``dry_over_wet`` of `JointPriors`.
+    The liquid changes adhesion and the interface. The shear stress may therefore differ by a
+    factor, ``dry_over_wet`` of `JointPriors`.
 
     Examples
     --------
@@ -60,7 +60,7 @@ class DryFriction:
 
     @property
     def area_ratio_error(self) -> float:
-        """Standard error of ln of the ratio.
+        """Standard error of the logarithm of the ratio.
 
         Raises
         ------
@@ -114,7 +114,7 @@ def loads_of(measured: xr.Dataset, load: str | float | xr.DataArray) -> xr.DataA
 
 
 def surfaces_of(measured: xr.Dataset, psd: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
-    """Give name and spectrum of every surface; "" is the name of the only one."""
+    """Yield name and spectrum of every surface; "" is the name of a single surface."""
     if "surface" not in measured["friction_coefficient"].dims:
         yield "", psd
         return
@@ -137,7 +137,7 @@ def computed_curves(
     priors: JointPriors,
     model: Arguments,
 ) -> xr.Dataset:
-    """Compute the curves of a surface at all loads, over all that the viscosity may be."""
+    """Compute the curves of a surface at all loads, over the plausible range of viscosity."""
     speed = measured["sliding_speed"].values
     speed = speed[np.isfinite(speed) & (speed > 0)]
     if not speed.size:
@@ -164,20 +164,20 @@ def curves_of_surface(
     area_enhancement: float | xr.DataArray,
     dry: DryFriction | None,
 ) -> Iterator[LoadCurve]:
-    """Give the curves of a surface at every load, those that were measured dry behind."""
+    """Yield the curves of a surface at every load, dry curves last."""
     for place in range(loads.size):
         labels = {dim: place for dim in loads.dims}
         at = loads.isel(labels)
         response = _response(computed, at, loads)
-        response = response.enlarged(_value(area_enhancement, surface, at))
-        name = _name(surface, at, loads)
+        response = response.enlarged(_ratio_at(area_enhancement, surface, at))
+        name = _curve_name(surface, at, loads)
         load = float(at)
-        wet = _chosen(measured, surface, at)
+        wet = _select_measured(measured, surface, at)
         if wet is not None:
             yield LoadCurve(name, surface, load, wet, response)
-        without = None if dry is None else _chosen(dry.measured, surface, at)
+        without = None if dry is None else _select_measured(dry.measured, surface, at)
         if dry is not None and without is not None:
-            area = constant_response(response.rest * _value(dry.area_ratio, surface, at))
+            area = constant_response(response.rest * _ratio_at(dry.area_ratio, surface, at))
             yield LoadCurve(f"{name} dry", surface, load, without, area, dry=True)
 
 
@@ -193,8 +193,8 @@ def _response(computed: xr.Dataset, at: xr.DataArray, loads: xr.DataArray) -> Re
     return response_of(curve, friction_factors=computed.attrs.get("friction_factors") != "no")
 
 
-def _chosen(measured: xr.Dataset, surface: str, at: xr.DataArray) -> xr.Dataset | None:
-    """Return what was measured of a surface at a load; None if nothing was."""
+def _select_measured(measured: xr.Dataset, surface: str, at: xr.DataArray) -> xr.Dataset | None:
+    """Return the measured curves of a surface at a load; None if nothing was measured."""
     labels: Arguments = {str(dim): at[dim].item() for dim in at.coords if dim in measured.dims}
     if surface and "surface" in measured.dims:
         labels["surface"] = surface
@@ -205,8 +205,8 @@ def _chosen(measured: xr.Dataset, surface: str, at: xr.DataArray) -> xr.Dataset 
     return mine if bool(np.isfinite(mine["friction_coefficient"]).any()) else None
 
 
-def _value(given: float | xr.DataArray, surface: str, at: xr.DataArray) -> float:
-    """Return what belongs to a surface and load of a number or an array; above zero it must be."""
+def _ratio_at(given: float | xr.DataArray, surface: str, at: xr.DataArray) -> float:
+    """Return the value for a surface and load from a number or an array, checked to be positive."""
     if isinstance(given, xr.DataArray):
         for dim in at.coords:
             if dim in given.dims:
@@ -219,8 +219,8 @@ def _value(given: float | xr.DataArray, surface: str, at: xr.DataArray) -> float
     return value
 
 
-def _name(surface: str, at: xr.DataArray, loads: xr.DataArray) -> str:
-    """Call a curve by its load, and by its surface where there are several."""
+def _curve_name(surface: str, at: xr.DataArray, loads: xr.DataArray) -> str:
+    """Return a curve's name: its load, and its surface if there are several."""
     dim = loads.dims[0] if loads.dims else ""
     text = f"{number(float(at))} N/m"
     if dim == "normal_force":

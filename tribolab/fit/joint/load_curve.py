@@ -1,4 +1,4 @@
-"""One measured curve of a joint fit, and the points that all of them make together."""
+"""Measured curves of a joint fit, and the points of all of them."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ _NO_ERROR = Cure(
 
 
 class LoadCurve(NamedTuple):
-    """Friction measured at one load, and what is computed beside it.
+    """Friction measured at one load, and the computed response.
 
     Parameters
     ----------
     name
-        What a reader calls it, such as "31 N".
+        Displayed name, such as "31 N".
     surface
-        Its surface; "" if there is one only.
+        Surface; "" if there is only one.
     load
         F_N/L [N/m].
     measured
         ``friction_coefficient`` over (sliding_speed), or over (run, sliding_speed), with ``_sem``
-        or, failing that, ``_std``.
+        or else ``_std``.
     response
-        What is computed beside it. Of a dry curve it holds what multiplies the wet shear stress.
+        Computed response. For a dry curve: the factor of the wet shear stress.
     dry
-        Whether it was measured without the liquid.
+        Whether the curve was measured without the liquid.
     """
 
     name: str
@@ -50,7 +50,7 @@ class LoadCurve(NamedTuple):
 
 
 class MeasuredPoints(NamedTuple):
-    """Points of all curves, the run of each, and how many cannot be taken."""
+    """Points of all curves, the run of each, and the number of points left out."""
 
     points: Points
     run: np.ndarray
@@ -60,28 +60,28 @@ class MeasuredPoints(NamedTuple):
 def points_of(
     curves: Sequence[LoadCurve], speed_range: tuple[float, float] = (0.0, np.inf)
 ) -> MeasuredPoints:
-    """Return the points of all curves, one after the other.
+    """Return the points of all curves in one sequence.
 
     Parameters
     ----------
     curves
         The measured curves.
     speed_range
-        Lowest and highest speed [m/s] to take.
+        Lowest and highest speed [m/s] to use.
 
     Raises
     ------
     AnalysisError
-        If a curve has no point with a friction above zero and a known error, or all together
-        have fewer than four.
+        If a curve has no point with a friction above zero and a known error, or there are fewer
+        than four points.
 
     Notes
     -----
-    A point whose error is not known gets the relative one that is the median of its curve. Errors
-    told by few runs are themselves uncertain, and one that is small by chance would outweigh all
-    others: the variance of a point of k runs becomes ``((k - 1) s^2 + 4 s0^2)/(k + 3)`` [1]_, with
-    ``s0^2 = a^2 mu^2 + b^2`` what all such points together say: a part that goes with friction,
-    and one, as of the force's zero, that does not.
+    A point of unknown error gets the median relative error of its curve. Errors from few runs are
+    uncertain, and one that is small by chance would outweigh all others: the variance of a point of
+    k runs becomes ``((k - 1) s^2 + 4 s0^2)/(k + 3)`` [1]_, with ``s0^2 = a^2 mu^2 + b^2`` fitted to
+    all such points: a part proportional to friction, and a constant one, e.g. from the zero of the
+    force.
 
     References
     ----------
@@ -91,7 +91,7 @@ def points_of(
     for number, curve in enumerate(curves):
         whole = curve.measured
         given = whole.get("friction_coefficient")
-        several = given is not None and "run" in given.dims  # other variables may be over it
+        several = given is not None and "run" in given.dims  # other variables may have this dim
         runs = [whole.isel(run=k) for k in range(whole.sizes["run"])] if several else [whole]
         parts += [_of_run(curve.name, run, number, place) for place, run in enumerate(runs)]
     counts = [part.speed.size for part in parts]
@@ -110,7 +110,7 @@ def points_of(
             f"{limits.MIN_POINTS_OF_LOAD.value} are wanted for a joint fit"
         )
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.where(kept, _moderated(error, friction, repeats, kept) / friction, np.nan)
+        relative = np.where(kept, _moderate(error, friction, repeats, kept) / friction, np.nan)
     for place, curve in enumerate(curves):
         mine = kept & (of_curve == place)
         if not mine.any():
@@ -155,7 +155,7 @@ def _of_run(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
     speeds = measured.get("measured_speed", measured["sliding_speed"]).values.astype(float)
     friction = given.values.astype(float)
     error = np.full(friction.size, np.nan)
-    for ending in ("_std", "_sem"):  # the better of the two last
+    for ending in ("_std", "_sem"):  # _sem is preferred
         if f"friction_coefficient{ending}" in measured:
             values = measured[f"friction_coefficient{ending}"].values.astype(float)
             error = np.where(np.isfinite(values) & (values > 0), values, error)
@@ -164,17 +164,17 @@ def _of_run(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
     return _Run(speeds[there], friction[there], error[there], repeats[there], curve, run)
 
 
-def _moderated(
+def _moderate(
     error: np.ndarray, friction: np.ndarray, repeats: np.ndarray, kept: np.ndarray
 ) -> np.ndarray:
-    """Draw the variances that few runs tell to what all points say together."""
+    """Return errors with the variances from few runs moved towards those of all points."""
     several = kept & np.isfinite(error) & (repeats > 1)
     if several.sum() < limits.MIN_POINTS_OF_LOAD.value:
         return error
     variance = error[several] ** 2
     columns = np.stack([friction[several] ** 2, np.ones(several.sum())], axis=1)
     usual = np.full(variance.size, variance.mean())
-    # of a variance known by k - 1 squares the error goes with itself
+    # the error of a variance from k - 1 squares is proportional to it
     for _ in range(_SCATTER_ROUNDS):
         parts, _ = nnls(columns / usual[:, None], variance / usual)
         usual = np.maximum(columns @ parts, 1e-3 * variance.mean())

@@ -1,4 +1,4 @@
-"""Fit the curves of several loads together: from what is measured and computed to the result."""
+"""Fit of the curves of several loads: from measured and computed curves to the result."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from tribolab.friction.statistics import NORMAL
 from tribolab.units.stamping import stamp
 
 _INTERVAL_ENDS = 0.025, 0.975
-_RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # quantiles at these ends, over the scale
+_RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # 2.5 % and 97.5 % quantiles over the scale
 _ROUNDING_OF_INTERVAL = 1e-9  # of an interval
-_DRAWN_SPEEDS = 61  # speeds of a drawn curve
+_DRAWN_SPEEDS = 61  # speeds of a plotted curve
 
 
 def fit_loads(
@@ -47,23 +47,22 @@ def fit_loads(
     Parameters
     ----------
     curves
-        Measured curves in one liquid, of one surface or several, and dry ones.
+        Measured curves in one liquid, for one or several surfaces, and dry ones.
     viscosity
-        The liquid's as stated [Pa s].
+        Stated viscosity of the liquid [Pa s].
     priors
-        By default those of `JointPriors`.
+        Default: `JointPriors`.
     common_error
-        Relative standard error [1] of the shear stress that all loads share.
+        Relative standard error [1] of the shear stress common to all loads.
     speed_error
-        Relative standard error [1] of the sliding speeds that all points share.
+        Relative standard error [1] of the sliding speeds common to all points.
     spectrum_error
-        By surface, from `model_uncertainty` at one of the loads: what is not known of its spectrum,
-        and of load, radius and modulus, where it varies them.
+        By surface, from `model_uncertainty` at one of the loads: effects of the uncertain spectrum,
+        and of load, radius and modulus if varied.
     area_ratio_error
-        Standard error of ln of the ratio of areas that multiplies the dry curves' response; one
-        for all, or by surface.
+        Standard error of ln of the ratio of areas of the dry curves; one for all, or by surface.
     speed_range
-        Lowest and highest speed [m/s] to take.
+        Lowest and highest speed [m/s] to use.
 
     Returns
     -------
@@ -72,7 +71,7 @@ def fit_loads(
     Raises
     ------
     AnalysisError
-        If no curve is of a wet contact, or the points are too few.
+        If there is no wet curve, or too few points.
     """
     priors = priors or JointPriors()
     wet = [curve for curve in curves if not curve.dry]
@@ -96,7 +95,7 @@ def fit_loads(
         if isinstance(area_ratio_error, Mapping)
         else dict.fromkeys(surfaces, area_ratio_error)
     )
-    transfer = [  # of a surface that was not measured dry it is held, for nothing hangs on it
+    transfer = [  # fixed for a surface without dry curves: nothing depends on it
         float(np.hypot(priors.dry_over_wet, errors.get(surface, 0.0)))
         if surface in measured_dry
         else 0.0
@@ -133,7 +132,7 @@ def fit_loads(
 def _left_out(
     model: JointModel, priors: JointPriors, posterior: Posterior, curves: Sequence[LoadCurve]
 ) -> dict[str, float]:
-    """Return ln p(points of a wet curve | all others) for each, from two evidences."""
+    """Return ln p(points of a wet curve | all others) for each, from the ratio of two evidences."""
     if np.unique(model.points.curve).size < 2:
         return {}
     rest = {}
@@ -147,12 +146,12 @@ def _left_out(
 def _marginals(
     parameters: Parameters, posterior: Posterior, priors: JointPriors, surfaces: Sequence[str]
 ) -> list[Marginal]:
-    """Return median, interval and prior of every parameter, logarithms undone."""
+    """Return median, interval and prior of every parameter, logarithms converted back."""
     middle, low, high = (posterior.quantile(p) for p in (0.5, *_INTERVAL_ENDS))
     spread = np.sqrt(np.diag(posterior.spread))
     reach = NORMAL * parameters.spread
     marginals = []
-    for place, (name, surface, logarithmic) in enumerate(_places(parameters, surfaces)):
+    for place, (name, surface, logarithmic) in enumerate(_names_of(parameters, surfaces)):
         values = np.array([middle, low, high, parameters.mean - reach, parameters.mean + reach])[
             :, place
         ]
@@ -162,7 +161,7 @@ def _marginals(
         told = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
         value, *ends = map(float, values)
         if abs(value) < _ROUNDING_OF_INTERVAL * (ends[1] - ends[0]):
-            value = 0.0  # but for rounding
+            value = 0.0  # except for rounding
         marginals.append(Marginal(name, surface, value, ends[0], ends[1], ends[2], ends[3], told))
     for name, scale in (("level", priors.level), ("correlated", priors.correlated)):
         value, first, last = (posterior.shared_quantile(name, p) for p in (0.5, *_INTERVAL_ENDS))
@@ -172,8 +171,8 @@ def _marginals(
     return marginals
 
 
-def _places(parameters: Parameters, surfaces: Sequence[str]) -> list[tuple[str, str, bool]]:
-    """Return name, surface and whether it is a logarithm, for each place in the vector."""
+def _names_of(parameters: Parameters, surfaces: Sequence[str]) -> list[tuple[str, str, bool]]:
+    """Return name, surface and whether it is a logarithm, for each element of the vector."""
     names = [("", "", False)] * parameters.mean.size
     for places, name, logarithmic in (
         (parameters.stress, "shear_stress", True),
@@ -201,7 +200,7 @@ def _points(
     curves: Sequence[LoadCurve],
     measured: MeasuredPoints,
 ) -> xr.Dataset:
-    """Return the points beside the model, and what of the residuals is shared."""
+    """Return the points with the model, and the shared part of the residuals."""
     points = model.points
     shared = shared_by_points(points, points, priors.correlation_length)
     computed, ascribed = np.zeros(points.log_speed.size), np.zeros(points.log_speed.size)

@@ -1,4 +1,4 @@
-"""The friction of several loads as one function of a few parameters, with its derivatives."""
+"""Friction at several loads as one function of a few parameters, with its derivatives."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ import numpy as np
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, Responses
 
-REFERENCE_SPEED = 1e-5  # m/s, v0: there sigma_0 and n are hardly correlated
+REFERENCE_SPEED = 1e-5  # m/s, v0: sigma_0 and n are hardly correlated for this reference
 
 
 class Points(NamedTuple):
-    """Measured points of all curves, one after the other.
+    """Measured points of all curves in one sequence.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Points(NamedTuple):
     log_friction, error
         ln mu and the standard error of mu over mu (point).
     curve, level
-        Which response, and which common level, a point has (point).
+        Index of the response and of the common level of each point (point).
     """
 
     log_speed: np.ndarray
@@ -35,18 +35,18 @@ class Points(NamedTuple):
     level: np.ndarray
 
     def without(self, left_out: np.ndarray) -> Points:
-        """Return the points but those of some curves."""
+        """Return the points without those of some curves."""
         kept = ~np.isin(self.curve, left_out)
         return Points(*(column[kept] for column in self))
 
 
 class Curve(NamedTuple):
-    """What is computed beside one measured curve.
+    """Computed response of one measured curve.
 
     Parameters
     ----------
     response
-        Over ln(eta v); of a dry contact constant.
+        Over ln(eta v); constant for a dry contact.
     surface
         Number of the surface.
     log_load
@@ -62,16 +62,16 @@ class Curve(NamedTuple):
 
 
 class Parameters(NamedTuple):
-    """Where each parameter stands in the vector, and its prior (parameter).
+    """Index of each parameter in the vector, and its prior (parameter).
 
     Parameters
     ----------
     stress, speed, load, dry
-        Places of ln sigma_0, n, m, and ln of dry over wet shear stress, by surface.
+        Indices of ln sigma_0, n, m, and ln of dry over wet shear stress, by surface.
     viscosity
-        Place of ln eta.
+        Index of ln eta.
     mean, spread
-        Of the prior, normal; a spread of 0 holds the parameter fixed.
+        Mean and standard deviation of the normal prior; a spread of 0 fixes the parameter.
     """
 
     stress: np.ndarray
@@ -91,11 +91,11 @@ def parameters_of(
     Parameters
     ----------
     surfaces
-        How many.
+        Number of surfaces.
     viscosity
         Median of the prior [Pa s].
     priors
-        Of the rest.
+        Priors of the other parameters.
     transfer
         For each surface the prior's standard deviation of ln of its dry over its wet shear stress;
         empty if nothing was measured dry.
@@ -115,12 +115,12 @@ def parameters_of(
 
 @dataclass(frozen=True, eq=False)
 class JointModel:
-    """Points, the curves computed beside them, the parameters, and F0 [N/m].
+    """Points, computed curves, parameters, and reference load F0 [N/m].
 
     Notes
     -----
-    ``ln mu = ln[f(eta v) + sigma_0 (v/v0)^n (F/F0)^m k(eta v)]``; of a dry curve f = 0, k is the
-    area with adhesion over the load, and sigma_0 is multiplied with the dry over the wet stress.
+    ``ln mu = ln[f(eta v) + sigma_0 (v/v0)^n (F/F0)^m k(eta v)]``; for a dry curve f = 0, k is the
+    area with adhesion over the load, and sigma_0 is multiplied by the ratio of dry to wet stress.
     """
 
     points: Points
@@ -140,9 +140,9 @@ class JointModel:
         Parameters
         ----------
         theta
-            The parameters (..., parameter); further dims are as many states at once.
+            The parameters (..., parameter); further dims are several states at once.
         at
-            Other points than the measured ones.
+            Points to use instead of the measured ones.
         """
         points = self.points if at is None else at
         design = self._design if at is None else self._design_of(at)
@@ -165,7 +165,7 @@ class JointModel:
         return self._design_of(self.points)
 
     def _design_of(self, points: Points) -> np.ndarray:
-        """Return the derivatives of ln of the shear stress, in which it is linear."""
+        """Return the derivatives of ln of the shear stress, which is linear in the parameters."""
         where, number = self.parameters, points.curve
         surface, log_load, dry = (
             np.array([getattr(curve, name) for curve in self.curves])[number]
@@ -180,12 +180,12 @@ class JointModel:
         return design
 
     def without(self, left_out: np.ndarray) -> JointModel:
-        """Return the model of all curves but some."""
+        """Return the model without some curves."""
         return replace(self, points=self.points.without(left_out))
 
 
 class Shared(NamedTuple):
-    """What errors of points have in common: blocks of one level, and neighbours of one curve."""
+    """Correlations of the points' errors: common level, and neighbouring speeds of one curve."""
 
     level: np.ndarray
     near: np.ndarray

@@ -1,4 +1,4 @@
-"""The most probable parameters of a joint fit, at many sizes of the shared errors at once."""
+"""Most probable parameters of a joint fit, for many sizes of the shared errors at once."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.model import JointModel, Shared
 
 _MAX_STEPS = 200
-_NEGLIGIBLE_LN_ODDS = 25.0  # of ln of odds
-_CONVERGED_DECREMENT = 1e-6  # of the decrement: a thousandth of a standard deviation
-_MAX_GAIN = 10.0  # times of what a step should gain, that the search may gain at most
-_MIN_GAIN = 0.5  # of what a step should gain, below which shorter ones are tried
-# the latter if none is better
+_NEGLIGIBLE_LN_ODDS = 25.0  # difference of log probability
+_CONVERGED_DECREMENT = 1e-6  # in ln: a thousandth of a standard deviation
+_MAX_GAIN = 10.0  # largest possible gain of the search, relative to the expected gain of a step
+_MIN_GAIN = 0.5  # share of the expected gain below which shorter steps are tried
+# the second set is tried if none of the first is better
 _STEP_SHARES = (
     (0.5, 0.25, 0.12, 0.03),
     (1e-2, 1e-3, 1e-4, 1e-6, 1e-8),
@@ -23,9 +23,9 @@ _STEP_SHARES = (
 
 
 class PosteriorModes(NamedTuple):
-    """The most probable parameters at sizes of shared errors, their covariance, evidence (mode).
+    """Most probable parameters for sizes of shared errors, their covariance, evidence (mode).
 
-    The search for a mode may be given up, or creep: what it would still gain is `left`.
+    The search for a mode may be stopped early, or converge slowly: `left` is its remaining gain.
     """
 
     theta: np.ndarray
@@ -39,15 +39,15 @@ def modes_of(
 ) -> PosteriorModes:
     """Return the modes for sizes of shared errors (level and correlated, mode).
 
-    `before` is ln of what is thought of each beforehand (mode). All at once, but for the largest,
-    from which they start: where much may be shared the mode is easily found.
+    `before` is the log prior of each (mode). The mode of the largest sizes, which is easily found,
+    is the start for all others, which are computed at once.
     """
     alone = np.diag(model.points.error**2)
     white = np.array(
         [_whitening(alone + t**2 * shared.level + k**2 * shared.near) for t, k in sizes.T]
     )
-    largest = _searched(model, white[-1:], before[-1:], start[None])
-    return _searched(model, white, before, np.repeat(largest.theta, len(white), axis=0))
+    largest = _find_modes(model, white[-1:], before[-1:], start[None])
+    return _find_modes(model, white, before, np.repeat(largest.theta, len(white), axis=0))
 
 
 def _whitening(covariance: np.ndarray) -> np.ndarray:
@@ -65,20 +65,20 @@ class _State(NamedTuple):
     theta: np.ndarray
     residual: np.ndarray  # (mode, point)
     jacobian: np.ndarray  # (mode, point, free parameter)
-    off: np.ndarray  # from the prior, in its standard deviations (mode, free parameter)
+    off: np.ndarray  # deviation from the prior in its standard deviations (mode, free parameter)
     size: np.ndarray  # sum of squares of both
 
     def at(self, which: np.ndarray) -> _State:
-        """Return some of them."""
+        """Return some of the modes."""
         return _State(*(part[which] for part in self))
 
     def put(self, which: np.ndarray, other: _State) -> None:
-        """Put others in the place of some of them."""
+        """Replace some of the modes by others."""
         for mine, part in zip(self, other, strict=True):
             mine[which] = part
 
 
-def _looked_at(model: JointModel, white: np.ndarray, theta: np.ndarray) -> _State:
+def _evaluate(model: JointModel, white: np.ndarray, theta: np.ndarray) -> _State:
     where = model.parameters
     free = where.spread > 0
     value, slopes = model.predicted(theta)
@@ -88,17 +88,17 @@ def _looked_at(model: JointModel, white: np.ndarray, theta: np.ndarray) -> _Stat
     return _State(theta, residual, white @ slopes[..., free], off, size)
 
 
-def _searched(
+def _find_modes(
     model: JointModel, white: np.ndarray, before: np.ndarray, start: np.ndarray
 ) -> PosteriorModes:
-    """Find the most probable parameters of each by Gauss-Newton, a step being shortened at need.
+    """Find the most probable parameters by Gauss-Newton, with shortened steps if needed.
 
-    A mode that is out of the question beside the best is not followed to its end.
+    The search for a mode that is negligible compared with the best is stopped.
     """
     where = model.parameters
     free = where.spread > 0
     scale = where.spread[free]
-    state = _looked_at(model, white, np.where(free, start, where.mean))
+    state = _evaluate(model, white, np.where(free, start, where.mean))
     constant = np.log(np.diagonal(white, axis1=1, axis2=2)).sum(axis=1) - np.log(scale).sum()
     constant -= 0.5 * state.residual.shape[1] * np.log(2 * np.pi)
     evidence, left = np.empty(len(white)), np.zeros(len(white))
@@ -122,7 +122,7 @@ def _searched(
         todo, step = todo[going], step[going]
         if not todo.size:
             break
-        stuck = _moved(model, white, state, todo, step, left[todo])
+        stuck = _take_step(model, white, state, todo, step, left[todo])
         left[todo[stuck]] = 0.0  # the rounding of the sums is reached
         todo = todo[~stuck]
     spread = np.zeros((*start.shape, start.shape[1]))
@@ -130,7 +130,7 @@ def _searched(
     return PosteriorModes(state.theta, spread, evidence, left)
 
 
-def _moved(
+def _take_step(
     model: JointModel,
     white: np.ndarray,
     state: _State,
@@ -138,24 +138,24 @@ def _moved(
     step: np.ndarray,
     expected: np.ndarray,
 ) -> np.ndarray:
-    """Move some states by a step, or by the part of it that is best; say which cannot be moved.
+    """Move some states by a step, or its best share; return which states cannot be improved.
 
     Parameters
     ----------
     which
-        Their places in `state` (moved).
+        Indices of the states in `state` (moved).
     step, expected
-        Where Gauss and Newton go, and by how much the size should fall (moved).
+        Gauss-Newton step, and the expected decrease of the size (moved).
     """
     before, white = state.at(which), white[which]
-    best = _looked_at(model, white, before.theta + step)
-    # a step that gains much less than it should goes too far, or not far enough
+    best = _evaluate(model, white, before.theta + step)
+    # a step that gains much less than expected is too long or too short
     short = np.flatnonzero(before.size - best.size < _MIN_GAIN * expected)
     for parts in _STEP_SHARES:
         if not short.size:
             break
         tried = [
-            _looked_at(model, white[short], before.theta[short] + part * step[short])
+            _evaluate(model, white[short], before.theta[short] + part * step[short])
             for part in parts
         ]
         for other in tried:

@@ -1,4 +1,4 @@
-"""The posterior of a joint fit: normal for each size of the shared errors, mixed by evidence."""
+"""Posterior of a joint fit: normal for each size of the shared errors, mixed by evidence."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tribolab.fit.joint.model import JointModel, shared_by_points
 from tribolab.fit.joint.modes import modes_of
 from tribolab.fit.joint.priors import JointPriors
 
-# Sizes of shared errors over the scale of their priors. Wider ones are tried where much of the
-# weight lies at the end, as where the model does not describe the curves.
+# Sizes of shared errors over the scale of their priors. Wider ones are tried if much of the weight
+# is at the end, e.g. if the model does not describe the curves.
 _LEVEL_GRID = np.array([0.06, 0.25, 0.5, 0.8, 1.2, 1.8, 2.6])
 _CORRELATED_GRID = np.array([0.06, 0.3, 0.6, 1.0, 1.5, 2.3])
 _MAX_WEIGHT_AT_END = 0.2
 _MAX_WIDENINGS = 5
-_MAX_DECREMENT = 1e-2  # of one that creeps
-_MIN_MODE_WEIGHT = 1e-4  # share of a mode that is looked at twice
+_MAX_DECREMENT = 1e-2  # of a mode that converges slowly
+_MIN_MODE_WEIGHT = 1e-4  # weight of a mode that requires convergence
 
 
 class Posterior(NamedTuple):
@@ -28,9 +28,9 @@ class Posterior(NamedTuple):
     Parameters
     ----------
     weight, level, correlated
-        Share of each component [1], and the sizes tau and kappa of its shared errors (component).
+        Weight of each component [1], and the sizes tau and kappa of its shared errors (component).
     mean, covariance
-        Of the parameters (component, parameter), (component, parameter, parameter).
+        Mean and covariance of the parameters (component, parameter[, parameter]).
     log_evidence
         ln of the probability density of the points ln mu.
     """
@@ -49,7 +49,7 @@ class Posterior(NamedTuple):
 
     @property
     def spread(self) -> np.ndarray:
-        """Covariance of the parameters (parameter, parameter): within components, and between."""
+        """Covariance of the parameters (parameter, parameter): within and between components."""
         off = self.mean - self.centre
         between = np.einsum("c,ci,cj->ij", self.weight, off, off)
         return np.einsum("c,cij->ij", self.weight, self.covariance) + between
@@ -60,7 +60,7 @@ class Posterior(NamedTuple):
         return mixture_quantile(self.weight, self.mean, deviation, probability)
 
     def shared_quantile(self, which: str, probability: float) -> float:
-        """Return the quantile of "level" or "correlated", linear between the sizes tried."""
+        """Return the quantile of "level" or "correlated", linear between the sizes of the grid."""
         sizes = getattr(self, which)
         values, place = np.unique(sizes, return_inverse=True)
         share = np.bincount(place, self.weight)
@@ -96,11 +96,11 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
     Parameters
     ----------
     model
-        With its points.
+        Model with its points.
     priors
-        Of the shared errors; those of the parameters are in the model.
+        Priors of the shared errors; those of the parameters are in the model.
     start
-        Where to look for the most probable parameters (parameter).
+        Starting values of the parameters (parameter).
 
     Raises
     ------
@@ -109,10 +109,10 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
 
     Notes
     -----
-    Covariance of the points' ln mu ``diag(s^2) + tau^2 B + kappa^2 K``, see `shared_by_points`. For
-    each tau and kappa of a grid the most probable parameters by Gauss-Newton, their covariance
-    ``(J' V^-1 J + P)^-1`` and the evidence by Laplace's approximation [1]_; the grid's points are
-    mixed by evidence times their share of the prior.
+    The covariance of the points' ln mu is ``diag(s^2) + tau^2 B + kappa^2 K``, see
+    `shared_by_points`. For each tau and kappa of a grid, the most probable parameters are found by
+    Gauss-Newton, with their covariance ``(J' V^-1 J + P)^-1`` and the evidence in Laplace's
+    approximation [1]_. The grid points are weighted by evidence times prior.
 
     References
     ----------
@@ -125,7 +125,7 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
         level = widths[0] * priors.level * _LEVEL_GRID
         correlated = widths[1] * priors.correlated * _CORRELATED_GRID
         sizes = np.stack(np.meshgrid(level, correlated, indexing="ij")).reshape(2, -1)
-        shares = _log_share(level, priors.level), _log_share(correlated, priors.correlated)
+        shares = _log_prior(level, priors.level), _log_prior(correlated, priors.correlated)
         before = np.add.outer(*shares).ravel()
         modes = modes_of(model, shared, sizes, before, start)
         chance = modes.log_evidence + before
@@ -141,12 +141,12 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
     return Posterior(weight, sizes[0], sizes[1], modes.theta, modes.covariance, log_evidence)
 
 
-def _log_share(size: np.ndarray, scale: float) -> np.ndarray:
-    """Return ln of Rayleigh's mass between the middles of neighbouring sizes.
+def _log_prior(size: np.ndarray, scale: float) -> np.ndarray:
+    """Return ln of the Rayleigh probability between the middles of neighbouring sizes.
 
     Examples
     --------
-    >>> round(float(np.exp(_log_share(np.array([0.5, 1.0, 2.0]), 1.0)).sum()), 12)
+    >>> round(float(np.exp(_log_prior(np.array([0.5, 1.0, 2.0]), 1.0)).sum()), 12)
     1.0
     """
     edges = np.r_[0.0, (size[1:] + size[:-1]) / 2, np.inf] / scale

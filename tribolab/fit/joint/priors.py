@@ -1,4 +1,4 @@
-"""What is thought of a joint fit's parameters before anything is measured."""
+"""Priors of the parameters of a joint fit."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from tribolab.core.errors import AnalysisError
 
 @dataclass(frozen=True)
 class JointPriors:
-    """Priors of a joint fit: normal in what they are said of, Rayleigh's where it is a spread.
+    """Priors of a joint fit: normal for the parameters, Rayleigh for the sizes of shared errors.
 
     Parameters
     ----------
     shear_stress, shear_stress_spread
         Median of sigma_0 [Pa] and the standard deviation of its logarithm.
     speed_exponent, load_exponent
-        Standard deviations of n and m about 0; 0 holds them there: one shear stress for all.
+        Standard deviations of n and m about 0; 0 fixes them: one shear stress for all.
     viscosity_spread
-        Standard deviation of ln eta about the viscosity that is stated.
+        Standard deviation of ln eta about the stated viscosity.
     level
-        Scale of tau, the relative error that all points of a run or load share.
+        Scale of tau, the relative error common to all points of a run or load.
     correlated
-        Scale of kappa, the relative error that neighbouring speeds share.
+        Scale of kappa, the relative error correlated between neighbouring speeds.
     correlation_length
-        Of that error, in ln v.
+        Correlation length of that error, in ln v.
     dry_over_wet
-        Standard deviation of ln of the dry over the wet shear stress, where dry curves are given.
+        Standard deviation of ln of the dry over the wet shear stress, if dry curves are given.
 
     Raises
     ------
@@ -37,14 +37,14 @@ class JointPriors:
 
     Notes
     -----
-    An exponent's interval under the prior alone is twice its number to either side: n from -0.2 to
-    0.2 is a factor of 6 over four decades, m from -0.6 to 0.6 a factor of 3 over the loads of Xu
-    et al. (2026), who find m between -0.3 and 0.
+    The prior interval of an exponent is two standard deviations on each side: n from -0.2 to 0.2 is
+    a factor of 6 over four decades, m from -0.6 to 0.6 a factor of 3 over the loads of Xu et al.
+    (2026), who find m between -0.3 and 0.
 
-    A few loads tell little of tau and kappa. A prior that is highest at zero, as the half of a
-    normal is, then makes intervals of 95 % that hold the truth in some 93.5 % of all campaigns;
-    Rayleigh's, x exp(-x^2/2) of their share of the scale, is zero there [1]_, and the intervals
-    hold what they say (`tests/benchmarks/joint_fit_coverage.py`).
+    A few loads hardly determine tau and kappa. With a prior that is highest at zero, such as a
+    half-normal, 95 % intervals then have a coverage of some 93.5 %. The Rayleigh prior, x
+    exp(-x^2/2) in units of the scale, is zero there [1]_, and the coverage is 95 %
+    (`tests/benchmarks/joint_fit_coverage.py`).
 
     References
     ----------
@@ -69,8 +69,8 @@ class JointPriors:
     dry_over_wet: float = 0.3
 
     def __post_init__(self) -> None:
-        """Refuse what is no spread."""
-        free = ("speed_exponent", "load_exponent", "viscosity_spread")  # these may be held fixed
+        """Raise an error for values that are not standard deviations."""
+        free = ("speed_exponent", "load_exponent", "viscosity_spread")  # these may be fixed
         for name in (field.name for field in fields(self)):
             value = getattr(self, name)
             if not (np.isfinite(value) and (value > 0 or (value == 0 and name in free))):

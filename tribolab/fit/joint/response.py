@@ -1,4 +1,4 @@
-"""What a computed curve says at any viscosity: friction over the product of viscosity and speed."""
+"""Computed friction at any viscosity, as a function of viscosity times speed."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from scipy.interpolate import CubicSpline
 from tribolab.core.errors import AnalysisError
 from tribolab.fit import limits
 
-_MIN_SPACING = 0.1  # of ln(eta v): of two computed points that lie closer one is enough
-_KNOT_OFFSET = 1e4  # between the knots of one response and those of the next, wider than any
+_MIN_SPACING = 0.1  # of ln(eta v): closer computed points are left out
+_KNOT_OFFSET = 1e4  # offset between the knots of successive responses, wider than any response
 
 
 class Response(NamedTuple):
-    """Friction at one load over ln(eta v), as the liquid is isoviscous.
+    """Friction at one load over ln(eta v), for an isoviscous liquid.
 
     Parameters
     ----------
     log_fluid
-        ln of the friction coefficient that the fluid makes.
+        ln of the friction coefficient due to the fluid.
     solid
         Friction coefficient per shear stress [1/Pa].
     low, high
-        Ends of ln(eta v), eta v in N/m, between which it was computed.
+        Range of ln(eta v), eta v in N/m, of the computation.
     rest
-        `solid` at rest, or at the lowest speed that was computed.
+        `solid` at rest, or at the lowest computed speed.
     """
 
     log_fluid: CubicSpline
@@ -38,34 +38,35 @@ class Response(NamedTuple):
     rest: float
 
     def enlarged(self, factor: float) -> Response:
-        """Return the response of a contact whose real area is larger by a factor."""
+        """Return the response with the real contact area multiplied by a factor."""
         larger = CubicSpline(self.solid.x, factor * self.solid(self.solid.x))
         return self._replace(solid=larger, rest=factor * self.rest)
 
     def at(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return f, df, k, dk at places ln(eta v), the derivatives by that; ends go on as they are.
+        """Return f, df, k, dk at ln(eta v), derivatives over ln(eta v); extrapolated at the ends.
 
-        Below the lowest product the contact is as at rest; no answer is wanted far beyond either.
+        Below the lowest product the contact is as at rest; values far beyond the ends are not
+        meaningful.
         """
         inside = np.clip(place, self.low, self.high)
         fluid = np.exp(self.log_fluid(inside))
         slope = fluid * self.log_fluid(inside, 1)
         solid = self.solid(inside)
-        touch = solid > 0  # a spline may go under zero where the bodies part
+        touch = solid > 0  # a spline may become negative where the bodies separate
         return fluid, slope, np.where(touch, solid, 0.0), np.where(touch, self.solid(inside, 1), 0)
 
 
 class Responses(NamedTuple):
-    """Several responses in one table, to be looked up at once.
+    """Several responses in one table, evaluated at once.
 
     Parameters
     ----------
     ends
         Lowest and highest ln(eta v) of each (response, 2).
     knots
-        Where their pieces begin, each response's moved `_KNOT_OFFSET` from the one before (piece).
+        Start of the pieces, shifted by `_KNOT_OFFSET` from one response to the next (piece).
     begin
-        Where their pieces begin (piece).
+        Start of the pieces (piece).
     pieces
         Coefficients of ln f and of k, the cubic one first (4, 2, piece).
     """
@@ -77,7 +78,7 @@ class Responses(NamedTuple):
 
     @classmethod
     def of(cls, responses: Sequence[Response]) -> Responses:
-        """Put responses together."""
+        """Return responses combined in one table."""
         begin = [response.solid.x[:-1] for response in responses]
         moved = [_KNOT_OFFSET * number + part for number, part in enumerate(begin)]
         pieces = [np.stack([r.log_fluid.c, r.solid.c], axis=1) for r in responses]
@@ -101,7 +102,7 @@ class Responses(NamedTuple):
         log_fluid, solid = np.moveaxis(((a * x + b) * x + c) * x + d, -2, 0)
         fluid_slope, solid_slope = np.moveaxis((3 * a * x + 2 * b) * x + c, -2, 0)
         fluid = np.exp(log_fluid)
-        touch = solid > 0  # a spline may go under zero where the bodies part
+        touch = solid > 0  # a spline may become negative where the bodies separate
         return fluid, fluid * fluid_slope, np.where(touch, solid, 0.0), touch * solid_slope
 
 
@@ -111,20 +112,20 @@ def response_of(curve: xr.Dataset, *, friction_factors: bool = True) -> Response
     Parameters
     ----------
     curve
-        From `stribeck_curve` over ``sliding_speed``, with any shear stress; its viscosity is among
-        its attributes.
+        From `stribeck_curve` over ``sliding_speed``, with any shear stress and its viscosity as an
+        attribute.
     friction_factors
-        False takes the liquid's friction without its factors, which the curve knows as well.
+        False uses the liquid's friction without friction factors, which the curve also contains.
 
     Raises
     ------
     AnalysisError
-        If it has fewer than five speeds above zero, or fewer than some three a decade.
+        If the curve has fewer than five speeds above zero, or fewer than some three per decade.
 
     Notes
     -----
-    Flow and elastic forces balance at the same film where eta v is the same [1]_, Eqs. (3)-(5): f
-    and k are functions of eta v alone, and one computed curve serves every viscosity.
+    The film depends on eta v only [1]_, Eqs. (3)-(5): f and k are functions of eta v, and one
+    computed curve is sufficient for all viscosities.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""What a joint fit found: marginals, what goes together, what is not identified, in words."""
+"""Result of a joint fit: marginals, correlations, and conclusions in words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.core.wording import many, number, percent
 from tribolab.fit import limits
 
-_NAMES = {  # of a parameter: its unit, and in words
+_NAMES = {  # by parameter: unit, and name in words
     "shear_stress": ("Pa", "shear stress"),
     "speed_exponent": ("1", "exponent of speed"),
     "load_exponent": ("1", "exponent of load"),
@@ -24,7 +24,7 @@ _NAMES = {  # of a parameter: its unit, and in words
 
 @dataclass(frozen=True)
 class Marginal:
-    """What is known of one parameter of a joint fit.
+    """Posterior of one parameter of a joint fit.
 
     Parameters
     ----------
@@ -32,14 +32,14 @@ class Marginal:
         ``shear_stress`` (sigma_0), ``speed_exponent`` (n), ``load_exponent`` (m), ``viscosity``,
         ``dry_over_wet`` shear stress; ``level`` (tau) and ``correlated`` (kappa) error.
     surface
-        The surface that it is of; "" if of all, or if there is one only.
+        Surface; "" for all, or for a single one.
     value, low, high
         Median and ends of the 95 % interval, in SI.
     prior_low, prior_high
-        Ends of the 95 % interval before anything was measured.
+        Ends of the 95 % interval of the prior.
     told
-        Share [1] of the prior's standard deviation that the data took away: 0 if they tell
-        nothing; of a parameter that was held fixed NaN.
+        Reduction [1] of the prior's standard deviation by the data: 0 if they contain no
+        information; NaN for a fixed parameter.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Marginal:
 
     @property
     def words(self) -> str:
-        """The parameter's name as it is said."""
+        """Name of the parameter in words."""
         said = _NAMES[self.name][1]
         return f"{said} of {self.surface}" if self.surface else said
 
@@ -79,11 +79,12 @@ class JointFit:
     Parameters
     ----------
     marginals
-        Of every parameter, in the order of `correlation`; the sizes of the shared errors last.
+        Marginals of all parameters, in the order of `correlation`; the sizes of the shared errors
+        last.
     correlation
-        Posterior correlation of the parameters but for those sizes (parameter, parameter).
+        Posterior correlation of the parameters without those sizes (parameter, parameter).
     reference_speed, reference_load
-        v0 [m/s] and F0 [N/m] that sigma_0 is for.
+        v0 [m/s] and F0 [N/m] of sigma_0.
     log_evidence
         ln of the probability density of the points under this model and its priors.
     left_out
@@ -91,17 +92,18 @@ class JointFit:
     points
         Over (point): ``surface``, ``curve``, ``run``, ``sliding_speed``, ``friction_coefficient``
         with ``_sem`` and ``_model``; ``relative_residual``, ln of measured over computed friction;
-        ``shared_residual``, what of it is ascribed to level and neighbouring speeds.
+        ``shared_residual``, its part attributed to level and neighbouring speeds.
     curves
         Over (curve, sliding_speed): ``friction_coefficient`` of the model with ``_low`` and
-        ``_high``, ends of its 95 % band by the parameters, ``_load_low`` and ``_load_high``, of
-        that with the errors that a load's points share; ``load`` [N/m] and ``surface`` (curve).
+        ``_high``, ends of its 95 % band due to the parameters, ``_load_low`` and ``_load_high``,
+        including the errors common to a load's points; ``load`` [N/m] and ``surface`` (curve).
     common_error
-        Relative standard error [1] of the shear stress that all loads share; it is in the interval.
+        Relative standard error [1] of the shear stress common to all loads, included in the
+        interval.
     spectrum_error
-        Surfaces whose spectrum's error is in the intervals.
+        Surfaces whose intervals include the error of the spectrum.
     skipped
-        How many points were not taken since their friction is not above zero.
+        Number of points left out because their friction is not above zero.
     """
 
     marginals: tuple[Marginal, ...]
@@ -117,7 +119,7 @@ class JointFit:
     skipped: int
 
     def marginal(self, name: str, surface: str = "") -> Marginal:
-        """Return what is known of a parameter, of a surface where there are several.
+        """Return the marginal of a parameter, for one surface if there are several.
 
         Raises
         ------
@@ -131,11 +133,11 @@ class JointFit:
 
     @property
     def described(self) -> bool:
-        """Whether the model describes the curves: neighbouring speeds err by less than a tenth."""
+        """Whether the model describes the curves: correlated error below a tenth."""
         return self.marginal("correlated").value <= limits.MAX_CORRELATED_ERROR.value
 
     def table(self) -> pd.DataFrame:
-        """Return a row for each parameter: median, 95 % interval, that of the prior, and words."""
+        """Return a table of the parameters: median, 95 % interval, that of the prior, and words."""
         rows = [
             {
                 "parameter": marginal.name,
@@ -154,31 +156,31 @@ class JointFit:
         return pd.DataFrame(rows).set_index("parameter")
 
     def correlations(self) -> pd.DataFrame:
-        """Return the posterior correlation of every two parameters."""
+        """Return the posterior correlation of every pair of parameters."""
         names = [marginal.words for marginal in self.marginals[: len(self.correlation)]]
         return pd.DataFrame(self.correlation, names, names)
 
     @property
     def words(self) -> list[str]:
-        """What the data do not tell, and what goes together, a sentence each."""
+        """Sentences on parameters that the data do not determine, and on their correlations."""
         return [
             *(
-                _untold(marginal)
+                _undetermined(marginal)
                 for marginal in self._physical
                 if marginal.told < limits.WEAK_REDUCTION_OF_PRIOR.value
             ),
-            *(_beyond(marginal) for marginal in self._physical if _is_beyond(marginal)),
-            *self._together(),
+            *(_contradiction(marginal) for marginal in self._physical if _is_beyond(marginal)),
+            *self._correlated(),
             *self._misfit(),
         ]
 
     @property
     def _physical(self) -> tuple[Marginal, ...]:
-        """All but the sizes of the shared errors, of which few loads always tell little."""
+        """All marginals except the sizes of the shared errors, which few loads hardly determine."""
         return self.marginals[: len(self.correlation)]
 
-    def _together(self) -> list[str]:
-        """Pairs of parameters that are hardly told apart."""
+    def _correlated(self) -> list[str]:
+        """Return sentences on pairs of parameters that are hardly distinguishable."""
         said = []
         for i, j in np.argwhere(
             np.triu(np.abs(self.correlation), 1) > limits.MAX_CORRELATION.value
@@ -191,7 +193,7 @@ class JointFit:
         return said
 
     def _misfit(self) -> list[str]:
-        """Where the model does not describe the curves, and points that are not taken."""
+        """Return sentences on a model that does not describe the curves, and on omitted points."""
         said = []
         if not self.described:
             off = percent(self.marginal("correlated").value)
@@ -207,7 +209,7 @@ class JointFit:
         return said
 
     def _repr_html_(self) -> str:
-        """Median and interval of every parameter in a row, then the sentences."""
+        """Return a table with median and interval of every parameter, and the sentences."""
         rows = "".join(
             f"<tr><th>{marginal.words}</th><td>{in_words(marginal)}</td>"
             f"<td>{marginal.identified}</td></tr>"
@@ -223,7 +225,7 @@ class JointFit:
 
 
 def in_words(marginal: Marginal) -> str:
-    """Return median and 95 % interval as a reader would say them.
+    """Return median and 95 % interval as text.
 
     Examples
     --------
@@ -239,12 +241,12 @@ def in_words(marginal: Marginal) -> str:
 
 
 def _is_beyond(marginal: Marginal) -> bool:
-    """Whether a parameter lies outside of what was thought possible beforehand."""
+    """Return whether a parameter is outside the interval of its prior."""
     return not marginal.prior_low <= marginal.value <= marginal.prior_high
 
 
-def _beyond(marginal: Marginal) -> str:
-    """Say that data and prior do not agree."""
+def _contradiction(marginal: Marginal) -> str:
+    """Return a sentence on a contradiction between data and prior."""
     before = replace(marginal, low=marginal.prior_low, high=marginal.prior_high)
     _, _, ends = in_words(before).partition("(")
     return (
@@ -253,8 +255,8 @@ def _beyond(marginal: Marginal) -> str:
     )
 
 
-def _untold(marginal: Marginal) -> str:
-    """Say that the data tell nothing, or little, of a parameter."""
+def _undetermined(marginal: Marginal) -> str:
+    """Return a sentence on a parameter that the data hardly determine."""
     if marginal.told < limits.MIN_REDUCTION_OF_PRIOR.value:
         return (
             f"{marginal.words}: not identified; the interval is what was assumed beforehand, "
