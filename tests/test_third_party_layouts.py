@@ -104,3 +104,13 @@ def test_tables_that_are_no_run_are_called_what_they_are(
     (tmp_path / "a.csv").write_text(text)
     with pytest.raises(ReadError, match=f"a table of .*{said}"):
         tl.read(tmp_path / "a.csv")
+
+
+def test_a_point_among_decimal_commas_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "a.txt"
+    line = "{}\t4,1\t20,5\t0,0{}\n".format
+    lines = "".join(line(n, 10 + n) for n in range(N))
+    file.write_text("Time [s]\tFx [N]\tFz [N]\tv [m/s]\n" + lines.replace("0,030", "0.030"))
+    with pytest.raises(ReadError, match="'0.030'") as refused:
+        tl.read(file)
+    assert "quotation" not in str(refused.value)

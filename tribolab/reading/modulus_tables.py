@@ -116,6 +116,8 @@ def _bare(cell: str) -> tuple[str, str]:
 
     >>> _bare("G' in [Pa]"), _bare('E" (MPa)'), _bare("Tan(delta)"), _bare("E'/MPa")
     (("G'", 'Pa'), ('E"', 'MPa'), ('Tan(delta)', ''), ("E'", 'MPa'))
+    >>> _bare("Gp_Pa"), _bare("omega_rad/s"), _bare("tan_delta")
+    (('Gp', 'Pa'), ('omega', 'rad/s'), ('tan_delta', ''))
     """
     cell = cell.strip()
     if len(cell) > _MAX_NAME:
@@ -127,6 +129,9 @@ def _bare(cell: str) -> tuple[str, str]:
     bare = _BARE_UNIT.fullmatch(cell)
     if bare and _concept(bare[1]) and not _concept(bare[2]):
         return bare[1].strip(), bare[2]
+    name, _, unit = cell.partition("_")  # "Gp_Pa", "omega_rad/s"
+    if _concept(name) and any(converts(unit, kind) for kind in ("Pa", "rad/s", "Hz", "K")):
+        return name, unit
     return cell, ""
 
 

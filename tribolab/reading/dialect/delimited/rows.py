@@ -177,8 +177,10 @@ class RowParser:
 
 
 def _is_number(cell: str, decimal: str) -> bool:
+    if decimal == "," and "." in cell:
+        return False
     try:
-        float(cell.replace(decimal, ".") if decimal == "," else cell)
+        float(cell.replace(decimal, "."))
     except ValueError:
         return False
     return True
