@@ -41,63 +41,61 @@ def adhesion(
     nodes: int = _NODES,
     max_iterations: int = _ITERATIONS,
 ) -> xr.Dataset:
-    """Contact area and effective work of adhesion of a rough adhesive contact.
+    """Return contact area and effective work of adhesion of a rough adhesive contact.
 
     Parameters
     ----------
     pressure
-        Nominal pressure [Pa] (any dims), zero or above; text with a unit if scalar. Not a number
-        stays not a number.
+        Nominal pressure [Pa] (any dims), zero or above; text with a unit if scalar. NaN gives NaN.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further
-        dims, which the result has, too.
+        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further dims,
+        which become dims of the result.
     effective_modulus
         E* [Pa].
     work_of_adhesion
         Work of adhesion gamma_0 of smooth surfaces [J/m2], e.g. ``"51 mJ/m^2"``; a DataArray over
-        (medium), or any dims that the result will have.
+        (medium) or other dims, which become dims of the result.
     area
         Theory of the contact area without adhesion, see `tribolab.contact.area.area_of`.
     kappa
         Elastic energy reduction factor at vanishing contact [1], 0 to 1.
     c_a
-        Factor of the detachment stress [1]; 1 is a crack of diameter lambda/2.
+        Factor of the detachment stress [1]; 1 corresponds to a crack of diameter lambda/2.
     nodes
-        Number of wavenumbers on which the equations are solved.
+        Number of wavenumbers at which the equations are solved.
     max_iterations
         Largest number of steps of the root search.
 
     Returns
     -------
     xarray.Dataset
-        ``contact_area_ratio`` A/A0 [1] at the largest wavenumber, the same without adhesion as
-        ``contact_area_ratio_no_adhesion``, ``area_enhancement`` their ratio,
-        ``root_search_steps`` and ``balance_residual`` (dims of pressure);
-        ``apparent_contact_area_ratio`` P(q) [1] and
-        ``effective_work_of_adhesion`` gamma_eff(q) [J/m2] (dims of pressure, wavenumber), with
-        the coordinate ``magnification``.
+        ``contact_area_ratio`` A/A0 [1] at the largest wavenumber,
+        ``contact_area_ratio_no_adhesion``, the same without adhesion, ``area_enhancement``, their
+        ratio, ``root_search_steps`` and ``balance_residual`` (dims of pressure);
+        ``apparent_contact_area_ratio`` P(q) [1] and ``effective_work_of_adhesion`` gamma_eff(q)
+        [J/m2] (dims of pressure, wavenumber), with the coordinate ``magnification``.
 
     Raises
     ------
     AnalysisError
-        If an argument has no meaning, or Eq. (11) could not be solved.
+        If an argument is invalid, or Eq. (11) cannot be solved.
 
     Notes
     -----
-    ``gamma_eff(q) P(q) = gamma_0 [P(q1) int (1 + xi^2 x)^(1/2) e^-x dx - (2 pi/delta)
-    int_q^q1 q'^2 P S C dq']``, ``delta = 4 gamma_0/E*``, ``S = kappa + (1 - kappa) P^2``: Eqs. (11)
-    and (12) of [1]_; gamma_eff is clipped at zero. P(q) is the part of a stress that diffuses from
-    the nominal pressure with the variance ``(pi/2) E*^2 int q^3 C dq`` and has not yet fallen to
-    ``-c_a sqrt(gamma_eff(q) E* q)`` [2]_; without adhesion that is Eqs. (6) and (7). Doubling
-    `nodes` from 200 changes areas by less than 0.1 %.
+    ``gamma_eff(q) P(q) = gamma_0 [P(q1) int (1 + xi^2 x)^(1/2) e^-x dx - (2 pi/delta) int_q^q1 q'^2
+    P S C dq']``, ``delta = 4 gamma_0/E*``, ``S = kappa + (1 - kappa) P^2``: Eqs. (11) and (12) of
+    [1]_; gamma_eff is clipped at zero. P(q) is the share of a stress that diffuses from the nominal
+    pressure with the variance ``(pi/2) E*^2 int q^3 C dq`` without reaching ``-c_a
+    sqrt(gamma_eff(q) E* q)`` [2]_; without adhesion this gives Eqs. (6) and (7). Doubling `nodes`
+    from 200 changes areas by less than 0.1 %.
 
     ``balance_residual`` is the misfit of Eq. (11) at the largest wavenumber, relative to its terms;
-    at the other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa
-    for a smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant
-    if gamma_eff(1) > 0.
+    at the other nodes the discretised equations are fulfilled. A pressure below 1e-4 of E* xi/2 (15
+    Pa for a smooth rubber contact) is treated as the limit p -> 0: area proportional to p, or
+    constant if gamma_eff(1) > 0.
 
-    With another theory of the `area` Eq. (11) is solved as it stands, and the area of that theory
-    grows by the ratio that comes out, at most to complete contact.
+    With another theory of the `area` Eq. (11) is solved unchanged, and the area of that theory is
+    multiplied by the resulting ratio, up to complete contact.
 
     References
     ----------
@@ -128,7 +126,7 @@ def adhesion_by_works(
     works_of_adhesion: Sequence[float],
     area: AreaTheory = "persson",
 ) -> list[xr.Dataset]:
-    """Adhesion results for several works of adhesion in one calculation.
+    """Return adhesion results for several works of adhesion in one calculation.
 
     Parameters
     ----------
@@ -140,7 +138,7 @@ def adhesion_by_works(
     Returns
     -------
     list of xarray.Dataset
-        One for each.
+        One result for each work of adhesion.
 
     Examples
     --------
@@ -164,7 +162,7 @@ def _adhesions(
     area: AreaTheory,
     max_iterations: int,
 ) -> list[xr.Dataset]:
-    """Solve all pressures at all works of adhesion together."""
+    """Return the results for all pressures and works of adhesion, solved together."""
     flat = over.values.ravel()
     pushed = np.maximum(flat, surface.small_pressure)
     lanes = np.tile(pushed, len(works)), np.repeat(works, flat.size)
@@ -184,16 +182,16 @@ def _adhesion(
     area: AreaTheory,
     solved: Balance,
 ) -> xr.Dataset:
-    """Dataset of a solution: areas at the pressures, also by another theory."""
+    """Return the dataset of a solution: areas at the pressures, also by another theory."""
     flat = over.values.ravel()
     pushed = np.maximum(flat, surface.small_pressure)
     free, touching = surface.without_adhesion(pushed, area), solved.area.copy()
     if area != "persson":
         touching = np.minimum(free * touching / surface.without_adhesion(pushed), 1.0)
-        # no wave adds to the contact that longer ones leave
+        # finer roughness cannot increase the contact
         touching = np.maximum.accumulate(touching[:, ::-1], axis=1)[:, ::-1]
     without = free[:, -1]
-    share = flat / pushed  # 1, but for pressures so small that the area is proportional to them
+    share = flat / pushed  # 1, except at small pressures: area proportional to p
     sticks = solved.start > 0
     with np.errstate(divide="ignore"):
         ratio = touching[:, -1] / without / np.where(sticks, share, 1.0)
@@ -240,7 +238,7 @@ def macroscopic_work_of_adhesion(
     nodes: int = _NODES,
     max_iterations: int = _ITERATIONS,
 ) -> xr.Dataset:
-    """Effective work of adhesion at magnification 1 and zero load, which decides on pull-off.
+    """Return the effective work of adhesion at magnification 1 and zero load (pull-off).
 
     Parameters
     ----------
@@ -250,10 +248,9 @@ def macroscopic_work_of_adhesion(
     Returns
     -------
     xarray.Dataset
-        ``macroscopic_work_of_adhesion`` gamma_eff(1) [J/m2]; ``pull_off``, 1 where it is above
-        zero, so that a force is needed to part the bodies, else 0; ``contact_area_ratio`` that
-        remains at p -> 0 [1], zero without pull-off. All without dims; the attribute ``verdict``
-        says it in words.
+        ``macroscopic_work_of_adhesion`` gamma_eff(1) [J/m2]; ``pull_off``, 1 if it is above zero,
+        so that a force is needed to separate the bodies, else 0; ``contact_area_ratio`` at p -> 0
+        [1], zero without pull-off. All without dims; the attribute ``verdict`` is a text.
 
     Raises
     ------
@@ -262,8 +259,8 @@ def macroscopic_work_of_adhesion(
 
     Notes
     -----
-    Eq. (11) of [1]_ at q0. Its sign is a statement about p -> 0: under load gamma_eff(1) is
-    another number, and it may vanish at a load although a pull-off force exists.
+    Eq. (11) of [1]_ at q0. The sign refers to p -> 0: gamma_eff(1) depends on the load, and may
+    vanish under load although a pull-off force exists.
 
     References
     ----------
@@ -317,6 +314,6 @@ def finite_pressures(pressure: str | AnyPressure) -> xr.DataArray:
 
 
 def pressure_coords(over: xr.DataArray) -> dict[Hashable, Any]:
-    """Coordinates of the pressures, and the pressures."""
+    """Return the coordinates of the pressures, and the pressures."""
     kept = {name: values for name, values in over.coords.items() if name != "pressure"}
     return {**kept, "pressure": (over.dims, over.values)}

@@ -1,11 +1,11 @@
 """Energy balance of adhesion: Eqs. (11) and (12) solved with the contact area P(q).
 
-Differentiated, Eq. (11) runs forward in wavenumber: the binding energy g(q) = gamma_eff P grows by
-the elastic energy that finer roughness would cost, and P(q) is lost where the diffusing stress
-meets the boundary that gamma_eff sets at that same wavenumber. So one number decides everything, g
-at the smallest wavenumber: it must be such that at the largest one g = gamma_0 P(q1) I(xi). That is
-one bracketed root for each pressure. Relaxation of Eq. (11) from P to gamma_eff and back finds the
-same root, but goes round in circles where gamma_eff(1) is about to lift off from zero.
+Differentiated, Eq. (11) can be integrated forward in wavenumber: the binding energy g(q) =
+gamma_eff P increases by the elastic energy of finer roughness, and P(q) decreases where the
+diffusing stress reaches the boundary given by gamma_eff at the same wavenumber. The only unknown is
+g at the smallest wavenumber, such that g = gamma_0 P(q1) I(xi) at the largest one: one bracketed
+root for each pressure. Alternating solution of Eq. (11) for P and gamma_eff has the same root, but
+does not converge where gamma_eff(1) begins to exceed zero.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import cumulative_at, spectrum_arrays
 from tribolab.units.conversion import positive, to_si
 
-# Share of the nodes that is spread evenly in ln q; the others follow the growth of the stress.
+# Share of the nodes that is spaced evenly in ln q; the others follow the growth of the stress.
 _EVEN_SHARE = 0.2
-_THINNED = 4  # nodes for one that the root is first looked for on
-_FELT = 1e-11  # of the elastic energy
-_NEAR = 2e-5  # relative: of a guess that wants no correction
+_THINNED = 4  # factor by which nodes are thinned for the first search of the root
+_FELT = 1e-11  # of the elastic energy, below which adhesion is negligible
+_NEAR = 2e-5  # relative error of a guess that needs no correction
 _SMALLEST_AREA = 1e-15
 _LARGEST_RESIDUAL = 1e-8
-# Below this share of E* xi/2 a pressure is the limit p -> 0: the theory is linear in p there, and
-# differences of probabilities near 1 lose the digits that are left.
+# Below this share of E* xi/2 the limit p -> 0 is used: the theory is linear in p there, and
+# differences of probabilities near 1 lose significant digits.
 _SMALL_PRESSURE = 1e-4
 
 March = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 class Balance(NamedTuple):
-    """Solution of Eq. (11) at each wavenumber, for each of k problems."""
+    """Solution of Eq. (11) at each wavenumber, for k problems."""
 
     area: np.ndarray  # P(q) [1] (k, n)
     binding: np.ndarray  # gamma_eff [J/m2] (k, n)
-    start: np.ndarray  # right-hand side of Eq. (11) at q0 before it is clipped at 0 [J/m2] (k)
+    start: np.ndarray  # right-hand side of Eq. (11) at q0 before clipping at 0 [J/m2] (k)
     residual: np.ndarray  # misfit of Eq. (11) at q1, relative to its terms (k)
     iterations: np.ndarray  # steps of the root search (k)
 
@@ -83,7 +83,7 @@ class Interface:
         stress = cumulative_at(fine, q, spectrum, 3)
         if not stress[-1] > 0:
             raise AnalysisError("psd: C is zero everywhere, there is no roughness to adhere to")
-        # the range where stress has yet to grow matters as much as the last decade: fourth root
+        # the range in which stress first grows is as important as the last decade: fourth root
         even = np.log(fine / q[0]) / np.log(q[-1] / q[0])
         measure = _EVEN_SHARE * even + (1 - _EVEN_SHARE) * (stress / stress[-1]) ** 0.25
         node = np.exp(np.interp(np.linspace(0, 1, nodes), measure, np.log(fine)))
@@ -110,23 +110,23 @@ class Interface:
         return float(1 + np.sqrt(np.pi) / 2 * self.slope * erfcx(1 / self.slope))
 
     def without_adhesion(self, pressure: np.ndarray, theory: AreaTheory = "persson") -> np.ndarray:
-        """P(q) of Eqs. (6) and (7), or of another theory, at the nodes (k, n)."""
+        """Return P(q) of Eqs. (6) and (7), or of another theory, at the nodes (k, n)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             area = area_of(pressure[:, None] / np.sqrt(2 * self.diffusion.time), theory)
         area[:, 0] = 1.0
         return area
 
     def reduced(self, area: np.ndarray) -> np.ndarray:
-        """S(q) P(q), the share of the elastic energy that is stored at a wavenumber."""
+        """Return S(q) P(q), the share of the elastic energy that is stored at a wavenumber."""
         return area * (self.kappa + (1 - self.kappa) * area * area)
 
     def march(self, start: np.ndarray, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Integrate P and g = gamma_eff P from q0 to q1.
+        """Return P and g = gamma_eff P integrated from q0 to q1.
 
         Parameters
         ----------
         start
-            g at q0 [J/m2] (k); if negative, gamma_eff is zero until g has grown above zero.
+            g at q0 [J/m2] (k); if negative, gamma_eff is zero until g exceeds zero.
         pressure
             Nominal pressure [Pa] (k).
 
@@ -143,8 +143,8 @@ class Interface:
         height = -np.sqrt(np.maximum(start, 0.0) * stiffness[0])
         for i in range(n - 1):
             before, stored = area[i], self.reduced(area[i])
-            # P at the next node is guessed by the parabola through ln P at the last three, or by
-            # what is there, and corrected where that was not near
+            # P at the next node is extrapolated by the parabola through ln P at the last three
+            # nodes, or constant, and corrected if the guess was inaccurate
             guess = before
             if i > 0:
                 ratio = before / area[i - 1]
@@ -172,7 +172,7 @@ class Interface:
         return area, energy
 
     def stored(self, area: np.ndarray) -> np.ndarray:
-        """Elastic energy [J/m2] (k) of a contact area P(q) (k, n)."""
+        """Return the elastic energy [J/m2] (k) of a contact area P(q) (k, n)."""
         reduced = self.reduced(area)
         return np.asarray((self.elastic * (reduced[:, 1:] + reduced[:, :-1]) / 2).sum(axis=1))
 
@@ -188,11 +188,11 @@ class Interface:
         )
 
     def solve(self, pressure: np.ndarray, work: np.ndarray, iterations: int) -> Balance:
-        """Find g at q0 so that Eq. (11) holds at q1, for each pressure and work of adhesion (k).
+        """Return the solution whose g at q0 fulfils Eq. (11) at q1, for each problem (k).
 
-        The root is bracketed: below, no adhesion at any wavenumber; above, gamma_eff(1) at the
-        largest value that Eq. (11) can have. It is looked for on a quarter of the nodes first.
-        `pressure` and `work` must be above zero.
+        The root is bracketed by no adhesion at any wavenumber, and by the largest gamma_eff(1) that
+        Eq. (11) allows. It is first searched for on a quarter of the nodes. `pressure` and `work`
+        must be above zero.
         """
         unit, gained = self.stored(self.without_adhesion(pressure)), work * self.area_gain
         area, energy = np.empty((2, self.wavenumber.size, unit.size))
@@ -208,7 +208,7 @@ class Interface:
 
             return at
 
-        # on the scale of asinh roots that are tiny (small pressure) and large are found as fast
+        # on an asinh scale tiny roots (small pressure) are found as fast as large ones
         low, high = np.full_like(unit, np.arcsinh(-1.0)), np.arcsinh(gained / unit)
         root = guided_root(misfit(self.march), misfit(self.thinned().march), low, high, iterations)
         binding = np.maximum(energy, 0.0) / area
@@ -219,12 +219,12 @@ class Interface:
 def rough_interface(
     psd: xr.Dataset, effective_modulus: str | float, kappa: float, c_a: float, nodes: int
 ) -> Interface:
-    """Prepare a rough interface from stated parameters.
+    """Return a rough interface from stated parameters.
 
     Raises
     ------
     AnalysisError
-        If a parameter has no meaning or the spectrum is none.
+        If a parameter or the spectrum is invalid.
     """
     if not 0 <= kappa <= 1:
         raise AnalysisError(f"kappa: a value from 0 to 1 is wanted; got {kappa:g}")
@@ -245,7 +245,7 @@ def work_value(work_of_adhesion: str | float) -> float:
     Raises
     ------
     AnalysisError
-        If it is negative or not finite.
+        If the work of adhesion is negative or not finite.
     """
     given = work_of_adhesion if isinstance(work_of_adhesion, str) else float(work_of_adhesion)
     work = to_si(given, "J/m^2", name="work_of_adhesion")
@@ -260,21 +260,21 @@ def work_value(work_of_adhesion: str | float) -> float:
 def balance(
     surface: Interface, pressure: np.ndarray, work: np.ndarray, max_iterations: int
 ) -> Balance:
-    """Solve Eq. (11) for each pressure and work of adhesion (k).
+    """Return the solution of Eq. (11) for each pressure and work of adhesion (k).
 
-    Zero work of adhesion gives Eqs. (6) and (7), a pressure that is not a number gives NaN.
+    Zero work of adhesion gives Eqs. (6) and (7), a NaN pressure gives NaN.
 
     Raises
     ------
     AnalysisError
-        If the equation is not met; the message names the pressure and what to change.
+        If the equation is not fulfilled; the message gives the pressure and the argument to change.
     """
     k, n = pressure.size, surface.wavenumber.size
     area, binding = surface.without_adhesion(pressure), np.zeros((k, n))
     start, residual, iterations = np.zeros(k), np.zeros(k), np.zeros(k, dtype=int)
     unknown = np.isnan(pressure)
     area[unknown], binding[unknown], residual[unknown] = np.nan, np.nan, np.nan
-    # where it is not felt beside the elastic energy the equation is met without adhesion
+    # if adhesion is negligible compared with the elastic energy, use the solution without adhesion
     felt = work * surface.area_gain * area[:, -1] > _FELT * surface.stored(area)
     todo = felt & ~unknown
     if todo.any():
@@ -293,7 +293,7 @@ def balance(
 
 
 def parameters(surface: Interface) -> dict[str, float | int]:
-    """Parameters of a result for its attributes."""
+    """Return the parameters of a result for its attributes."""
     return {
         "effective_modulus_Pa": surface.modulus,
         "kappa": surface.kappa,

@@ -34,7 +34,7 @@ def adhesion_uncertainty(
     nodes: int = 200,
     max_iterations: int = 100,
 ) -> xr.Dataset:
-    """Contact area with its spread due to uncertain surface energies and contact angles.
+    """Return the contact area with its spread due to uncertain surface energies and angles.
 
     Parameters
     ----------
@@ -51,9 +51,9 @@ def adhesion_uncertainty(
         ``contact_area_ratio`` [1] (medium, dims of pressure) at the chosen values, ``_low`` and
         ``_high`` at the smallest and largest work of adhesion inside the bounds, ``_std`` over the
         random draws; ``macroscopic_work_of_adhesion`` [J/m2] (medium) at vanishing load, with
-        ``_low`` and ``_high``: where the first is zero and the second is not, the surface energies
-        do not decide whether there is a pull-off force; the variables of
-        `work_of_adhesion_spread` (medium).
+        ``_low`` and ``_high``: if the first is zero and the second is not, the surface energies do
+        not determine whether there is a pull-off force; the variables of `work_of_adhesion_spread`
+        (medium).
 
     Raises
     ------
@@ -62,10 +62,10 @@ def adhesion_uncertainty(
 
     Notes
     -----
-    The area grows with the work of adhesion, so the bounds on it are exact. Draws are read off a
-    monotonic curve of area over work of adhesion, solved at 15 values or more. A liquid that wets
-    (negative work of adhesion) gives the area without adhesion. The spread is that of the inputs;
-    that Eqs. (11), (13) and (14) are approximations is not in it.
+    The area increases with the work of adhesion, so its bounds are exact. Draws are interpolated on
+    a monotonic curve of area over work of adhesion, solved at 15 values or more. A wetting liquid
+    (negative work of adhesion) gives the area without adhesion. The spread is due to the inputs
+    only; it does not include the approximations of Eqs. (11), (13) and (14).
 
     Examples
     --------
@@ -85,7 +85,7 @@ def adhesion_uncertainty(
     drawn = sample_work_of_adhesion(energies, samples, seed).clip(0)
     curve = np.union1d(works, np.linspace(works.min(), works.max(), 13))
 
-    # the limit p -> 0 is solved beside the pressures asked for
+    # the limit p -> 0 is solved together with the requested pressures
     pushed = np.append(np.maximum(flat, surface.small_pressure), surface.small_pressure)
     solved = balance(
         surface, np.tile(pushed, curve.size), np.repeat(curve, pushed.size), max_iterations

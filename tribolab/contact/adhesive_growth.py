@@ -37,16 +37,16 @@ class AdhesiveGrowth(NamedTuple):
         Parameters
         ----------
         solid, whole
-            Pressure of the solid contact, and that of solid and fluid [Pa] (..., x).
+            Pressure of the solid contact, and of solid plus fluid [Pa] (..., x).
         area
-            A/A0 at the solid's pressure without adhesion [1] (..., x).
+            A/A0 at the solid pressure without adhesion [1] (..., x).
 
         Notes
         -----
-        ``A(p_cont) A_adh(p)/A_0(p)``, at most 1: adhesion acts in the
-        share of the contact that the solid holds. In the linear range it is A_adh(p_cont), and
-        where a contact binds at no pressure at all it goes to 0 with p_cont all the same. Outside
-        the nominal contact, where p is under 1e-3 of its maximum, nothing is added.
+        ``A(p_cont) A_adh(p)/A_0(p)``, at most 1: adhesion acts in the solid share of the contact.
+        In the linear range this is A_adh(p_cont); for a contact that adheres without pressure it
+        still vanishes with p_cont. Outside the nominal contact, where p is below 1e-3 of its
+        maximum, adhesion is neglected.
         """
         with np.errstate(divide="ignore"):  # a flooded outlet has tension, outside the contact
             pressure = np.log(np.maximum(whole, 0.0))
@@ -58,21 +58,22 @@ class AdhesiveGrowth(NamedTuple):
 def adhesive_growth(
     psd: xr.Dataset, effective_modulus: float, work_of_adhesion: str | float, highest: float
 ) -> AdhesiveGrowth | None:
-    """Tabulate the growth of the area by adhesion up to a pressure.
+    """Return the growth of the area by adhesion, tabulated up to a pressure.
 
     Parameters
     ----------
     psd, effective_modulus
         As for `adhesion`.
     work_of_adhesion
-        Under the liquid [J/m2]; where it is not above zero, the liquid wets and nothing is added.
+        Work of adhesion in the liquid [J/m2]; if not above zero, the liquid wets and the area is
+        unchanged.
     highest
-        Largest pressure [Pa] that will be asked for.
+        Largest pressure [Pa] of the table.
 
     Returns
     -------
     AdhesiveGrowth or None
-        None if nothing is added.
+        None if the area is unchanged.
 
     Raises
     ------

@@ -1,9 +1,9 @@
 """Contact area of a rough surface against reduced pressure, in three theories.
 
-Persson's theory lets the stress diffuse as in complete contact. Where the contact is partial a wave
-stores less elastic energy than that, and by the share S(P) of it that is left does the variance of
-the stress grow more slowly: dV/dV_c = S(P), V_c being that of complete contact. The share hangs on
-the area P alone, so the area is one function of y = sqrt(2) p/(E* xi), whatever the spectrum.
+In Persson's theory the stress diffuses as in complete contact. In partial contact a wave stores
+only a share S(P) of that elastic energy, and the variance of the stress grows more slowly: dV/dV_c
+= S(P), V_c being that of complete contact. The share depends only on the area P, so that the area
+is one function of y = sqrt(2) p/(E* xi) for all spectra.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tribolab.core.errors import AnalysisError, nearest, shown
 AreaTheory = Literal["persson", "corrected", "numerics"]
 _GAMMA = 0.51  # S(0) of the corrected form
 _FIT = 0.5, 0.45  # S = 1 - a (1 - P)^b
-_FIRST, _LAST, _NODES = 6.0, 1e-6, 401  # of z, where A/A0 = erf z
+_FIRST, _LAST, _NODES = 6.0, 1e-6, 401  # range and number of z, with A/A0 = erf z
 _SHARES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "corrected": lambda area: _GAMMA + (1 - _GAMMA) * area**2,
     "numerics": lambda area: 1 - _FIT[0] * (1 - area) ** _FIT[1],
@@ -29,12 +29,12 @@ _SHARES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 
 
 def area_of(reduced: np.ndarray, area: AreaTheory) -> np.ndarray:
-    """A/A0 at reduced pressures y = p/(E* (pi int q^3 C dq)^(1/2)), not negative (any shape).
+    """Return A/A0 at reduced pressures y = p/(E* (pi int q^3 C dq)^(1/2)), not negative.
 
     Raises
     ------
     AnalysisError
-        If there is no such theory.
+        If the theory is unknown.
 
     Notes
     -----
@@ -66,13 +66,13 @@ def check_area(area: str) -> None:
 
 
 def alternative_area_theory(area: AreaTheory) -> AreaTheory:
-    """Theory for comparison: the corrected one, or Persson's for any other."""
+    """Return the theory for comparison: the corrected one, or Persson's for any other."""
     return "corrected" if area == "persson" else "persson"
 
 
 @functools.cache
 def _table(area: AreaTheory) -> tuple[PchipInterpolator, float]:
-    """Ln z over ln y, and the lowest ln y; above y = 6, where contact is complete, z = y."""
+    """Return ln z over ln y, and the lowest ln y; above y = 6, where contact is complete, z = y."""
     nodes = np.linspace(np.log(_FIRST), np.log(_LAST), _NODES)
     t, weight = np.polynomial.legendre.leggauss(6)
     half = (nodes[0] - nodes[1]) / 2

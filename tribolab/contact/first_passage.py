@@ -1,8 +1,8 @@
 """First-passage probability of a diffusion to a moving absorbing boundary.
 
-The stress at a point of a rough contact diffuses as finer roughness is let in: "time" is its
-variance, and contact is lost where the stress falls to the boundary (zero without adhesion, a
-detachment stress with it). What survives is the apparent contact area.
+The stress at a point of a rough contact diffuses as finer roughness is included: "time" is its
+variance, and contact is lost where the stress falls to the boundary (zero without adhesion, else a
+detachment stress). The surviving share is the apparent contact area.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ class Diffusion:
 
     Notes
     -----
-    The boundary is taken as constant inside a step. Then the diagonal of the Volterra equation is
-    exactly 1/2 however fast the boundary recedes, so one step can be solved after the other without
-    loss of digits; with the boundary of the nodes the diagonal vanishes and the sum is unstable.
+    The boundary is constant within a step. Then the diagonal of the Volterra equation is exactly
+    1/2 for any speed of the boundary, and steps are solved successively without loss of digits;
+    with the boundary at the nodes the diagonal vanishes and the sum is unstable.
     """
 
     time: np.ndarray  # (n), starts with 0, never decreases
@@ -33,7 +33,7 @@ class Diffusion:
 
     @classmethod
     def over(cls, time: ArrayLike) -> Diffusion:
-        """Prepare the nodes in time.
+        """Return a diffusion on given nodes in time.
 
         Raises
         ------
@@ -60,18 +60,18 @@ class Diffusion:
         levels: np.ndarray,
         losses: np.ndarray,
     ) -> np.ndarray:
-        """Probability of reaching the boundary in one step, given all earlier steps.
+        """Return the probability of reaching the boundary in one step, given all earlier steps.
 
         Parameters
         ----------
         step
-            Number of the step; it ends at node ``step + 1``.
+            Index of the step, which ends at node ``step + 1``.
         level
             Height of the boundary in this step (k).
         start
-            Where the diffusion starts (k).
+            Start of the diffusion (k).
         levels, losses
-            Heights and losses of the steps before (step or more, k).
+            Heights and losses of the earlier steps (step or more, k).
 
         Returns
         -------
@@ -80,9 +80,9 @@ class Diffusion:
 
         Notes
         -----
-        Whoever is at or below the boundary b_i at time t_i has met it before; from the meeting
-        place it is a coin's throw, a diffusion with the time that is left:
-        Phi((b_i - p)/sqrt(t_i)) = sum_j dF_j Phi((b_i - b_j)/sqrt(t_i - t_jm)), solved for dF_i.
+        Each path at or below the boundary b_i at time t_i has reached it before, and has diffused
+        from there during the remaining time: Phi((b_i - p)/sqrt(t_i)) = sum_j dF_j Phi((b_i -
+        b_j)/sqrt(t_i - t_jm)), solved for dF_i.
         """
         if not self.runs[step]:
             return np.zeros_like(level)
@@ -90,17 +90,17 @@ class Diffusion:
         if step:
             weight = ndtr((level - levels[:step]) * self.inverse_root[step + 1, :step, None])
             below -= np.einsum("jk,jk->k", weight, losses[:step])
-        # rounding alone can make it negative where next to nothing is lost
+        # rounding may make a tiny loss negative
         return np.maximum(2 * below, 0.0)
 
 
 def survival(start: ArrayLike, boundary: ArrayLike, time: ArrayLike) -> np.ndarray:
-    """Probability that a diffusion has not yet reached a moving boundary below it.
+    """Return the probability that a diffusion has not yet reached a moving boundary below it.
 
     Parameters
     ----------
     start
-        Where the diffusion starts, above the boundary (k) or a number.
+        Start of the diffusion, above the boundary (k) or a number.
     boundary
         Height of the boundary at the nodes (n), or for each start (k, n).
     time
@@ -114,12 +114,12 @@ def survival(start: ArrayLike, boundary: ArrayLike, time: ArrayLike) -> np.ndarr
     Raises
     ------
     AnalysisError
-        If the shapes do not fit, time runs backwards, or a start lies below the boundary.
+        If the shapes do not match, time decreases, or a start is below the boundary.
 
     Notes
     -----
-    The error falls with the 3/2 power of the step of time. A boundary at rest gives
-    erf((p - b)/sqrt(2 t)) exactly, whatever the nodes: that of [1]_ when b = 0.
+    The error decreases with the 3/2 power of the time step. A constant boundary gives exactly
+    erf((p - b)/sqrt(2 t)) for any nodes: the result of [1]_ for b = 0.
 
     References
     ----------

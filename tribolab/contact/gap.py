@@ -25,12 +25,12 @@ from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
 
 GapVariant = Literal["flow", "plain"]
-_PER_DECADE = 20  # magnifications
-COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
+_PER_DECADE = 20  # magnifications per decade
+COMPLETE = 1e-2  # cut-offs of mean separation below which the contact is complete
 _FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
-_FAR = 8.0  # heights of a Gaussian from its middle, where nothing is left of it
-_NEGLIGIBLE = 1e-9  # share of the open area that is left out
-_LUMP = 1e-4  # cut-offs under which gaps are counted in one cell
+_FAR = 8.0  # rms heights from the mean beyond which a Gaussian is negligible
+_NEGLIGIBLE = 1e-9  # share of the open area that is neglected
+_LUMP = 1e-4  # gaps below this share of the cut-off are combined in one cell
 _PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on each
 
 
@@ -51,7 +51,7 @@ def gap_distribution(
     gamma: float = 0.45,
     cutoff: str | float = 1e-9,
 ) -> xr.Dataset:
-    """Distribution P(u) of the gap in the area without contact.
+    """Return the distribution P(u) of the gap in the area without contact.
 
     Parameters
     ----------
@@ -59,43 +59,42 @@ def gap_distribution(
         Nominal pressure [Pa] (any dims), above zero; text with a unit if scalar. The dim of a
         bare array is called ``pressure``.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further
-        dims, which the result has, too.
+        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further dims,
+        which become dims of the result.
     effective_modulus
         E* [Pa].
     variant
-        ``"flow"`` narrows every Gaussian to ``h_eff^-2 = h_rms^-2 + u1^-2``, for the averages
-        that flow needs; ``"plain"`` keeps h_rms, for <1/u>. So do the two agree best with
-        boundary-element runs.
+        ``"flow"`` narrows every Gaussian to ``h_eff^-2 = h_rms^-2 + u1^-2``, for averages in flow;
+        ``"plain"`` keeps h_rms, for <1/u>. These choices agree best with boundary-element results.
     gamma
         Elastic-energy reduction factor [1] of the mean separation.
     cutoff
-        Gap [m] under which `gap_averages` leaves out, if asked to; the grid has an edge there.
+        Gap [m] below which `gap_averages` can omit gaps; an edge of the grid.
 
     Returns
     -------
     xarray.Dataset
-        Over the dims of `pressure` and a grid ``gap`` [m] that serves all of them:
-        ``gap_density`` P(u) [1/m] without its delta at u = 0, ``gap_weight`` [1] to sum f(u)
-        with, and over the dims of `pressure` ``contact_area_ratio`` (the weight of that delta),
-        ``separation`` [m] and ``gap_scale`` [1], the factor that made <u> equal to it. The
-        weights sum to 1 - A/A0, and ``gap_weight * gap`` to the separation, within 1e-4.
+        Over the dims of `pressure` and a common grid ``gap`` [m]: ``gap_density`` P(u) [1/m]
+        without its delta at u = 0, ``gap_weight`` [1] for sums over f(u), and over the dims of
+        `pressure` ``contact_area_ratio`` (the weight of that delta), ``separation`` [m] and
+        ``gap_scale`` [1], the factor that makes <u> equal to it. The weights sum to 1 - A/A0, and
+        ``gap_weight * gap`` to the separation, within 1e-4.
 
     Raises
     ------
     AnalysisError
         If a pressure is not above zero and finite, the variant is unknown, the surface has no
-        roughness, or the contact is so complete that no gap is left.
+        roughness, or the contact is complete.
 
     Notes
     -----
     ``P(u) = int (-dA/A0) [g(u - u1) + g(u + u1)] + (A/A0) delta(u)`` with g a Gaussian of the
-    roughness that is not yet resolved, and ``u1 = d(u A)/dA``, u(zeta) being the separation at
-    pressure p A0/A(zeta) on that roughness [1]_. At the longest waves nothing has opened yet while
-    u(zeta) already falls, and u1 diverges: the first 1 % of the open area is given the u1 that
-    is reached there. All u are then multiplied by one factor so that <u> is the mean separation.
-    Up to A/A0 = 0.13 that first part changes <u^3> by 1 % and <1/u> by 0.1 %; beyond percolation
-    <u^3> is uncertain by a factor of two.
+    unresolved roughness, and ``u1 = d(u A)/dA``, u(zeta) being the separation at pressure p
+    A0/A(zeta) on that roughness [1]_. At the longest waves no area is open while u(zeta) already
+    decreases, and u1 diverges: the first 1 % of the open area has the u1 reached there. All u are
+    then multiplied by one factor so that <u> is the mean separation. Up to A/A0 = 0.13 that first
+    part changes <u^3> by 1 % and <1/u> by 0.1 %; beyond percolation <u^3> is uncertain by a factor
+    of two.
 
     References
     ----------
@@ -123,9 +122,9 @@ def gap_distributions(
     cutoff: str | float = 1e-9,
     points: int = _POINTS,
 ) -> list[xr.Dataset]:
-    """Several variants of `gap_distribution` with shared intermediate results.
+    """Return several variants of `gap_distribution` with shared intermediate results.
 
-    Half the `points` in each half decade of u do where the surfaces are within some ten
+    Half the `points` in each half decade of u suffice if the surfaces are within some ten
     roughnesses.
     """
     for variant in variants:
@@ -170,7 +169,7 @@ def _distribution(
     cutoff: float,
     points: int,
 ) -> xr.Dataset:
-    """Distribute the openings of each pressure over a grid of gaps, for a given mean."""
+    """Return the openings of each pressure distributed over a grid of gaps, for a given mean."""
     if variant == "flow":
         height = openings.height * openings.gap / np.hypot(openings.height, openings.gap)
         openings = openings._replace(height=height)
@@ -201,18 +200,18 @@ def gap_averages(
     at_contact: float = 0.0,
     above_cutoff: bool = False,
 ) -> xr.DataArray:
-    """Average of a function of the gap, over open and closed area.
+    """Return the average of a function of the gap, over open and closed area.
 
     Parameters
     ----------
     distribution
         From `gap_distribution`.
     function
-        Takes the gap u [m] (gap); may mix it with arrays over the dims of the pressure.
+        Function of the gap u [m] (gap); may include arrays over the dims of the pressure.
     at_contact
-        Value of the function where the surfaces touch; the contact counts with A/A0.
+        Value of the function in contact; its weight is A/A0.
     above_cutoff
-        Leave gaps under the distribution's cut-off out, as <1/u> needs.
+        Whether to omit gaps below the distribution's cut-off, as needed for <1/u>.
 
     Returns
     -------
@@ -238,10 +237,10 @@ def gap_averages(
 def _openings(
     stiffness: np.ndarray, q: np.ndarray, spectrum: np.ndarray, gamma: float
 ) -> tuple[_Openings, np.ndarray]:
-    """Area that opens between neighbouring magnifications, and the area in contact.
+    """Return the area that opens between neighbouring magnifications, and the area in contact.
 
-    On a panel of wavenumbers 1/q is its mean over the slope there, from exact moments, so a coarse
-    grid of magnifications loses nothing of a noisy spectrum.
+    On a panel of wavenumbers 1/q is averaged over the slope, from exact moments, so that a coarse
+    grid of magnifications represents a noisy spectrum.
     """
     count = int(np.ceil(np.log10(q[-1] / q[0]) * _PER_DECADE)) + 1
     nodes = np.geomspace(q[0], q[-1], max(count, 20)).clip(q[0], q[-1])
@@ -264,7 +263,7 @@ def _openings(
 def _nested_separation(
     stiffness: np.ndarray, slope2: np.ndarray, mean_inverse: np.ndarray, gamma: float
 ) -> np.ndarray:
-    """Mean separation of the area at each magnification, due to finer roughness.
+    """Return the mean separation of the area at each magnification, due to finer roughness.
 
     Parameters
     ----------
@@ -292,7 +291,7 @@ def _nested_separation(
 
 
 def _folded_mean(openings: _Openings) -> np.ndarray:
-    """Mean of |u| over all openings, with u Gaussian about u1."""
+    """Return the mean of |u| over all openings, with u Gaussian about u1."""
     share, gap, height = openings
     with np.errstate(divide="ignore", invalid="ignore"):
         z = np.nan_to_num(gap / (np.sqrt(2) * height), posinf=np.inf)
@@ -301,10 +300,10 @@ def _folded_mean(openings: _Openings) -> np.ndarray:
 
 
 def _grid(openings: _Openings, cutoff: float, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gaps and steps: one cell from 0 to `_LUMP` cut-offs, then panels of equal ratio.
+    """Return gaps and steps: one cell from 0 to `_LUMP` cut-offs, then panels of equal ratio.
 
-    Waves much shorter than the gap's own scale open by less than any atom; the one cell holds
-    them, with its exact share, so that the grid need not follow them down.
+    Waves much shorter than the scale of the gap open by less than an atom: the first cell contains
+    their exact share, so that the grid need not resolve them.
     """
     widest = np.max((openings.gap + 8 * openings.height)[openings.share > 0])
     low = round(np.log10(_LUMP) * _PANELS)
@@ -320,7 +319,7 @@ def _grid(openings: _Openings, cutoff: float, points: int) -> tuple[np.ndarray, 
 
 
 def _bell(z: np.ndarray) -> np.ndarray:
-    """Gaussian exp(-z^2/2), computed in place."""
+    """Return the Gaussian exp(-z^2/2), computed in place."""
     np.multiply(z, z, out=z)
     np.multiply(z, -0.5, out=z)
     return np.exp(z, out=z)
@@ -329,7 +328,7 @@ def _bell(z: np.ndarray) -> np.ndarray:
 def _density(
     at: np.ndarray, first: float, share: np.ndarray, gap: np.ndarray, height: np.ndarray
 ) -> np.ndarray:
-    """Sum of folded Gaussians at given gaps; the mean density in the first cell."""
+    """Return the sum of folded Gaussians at given gaps; the mean density in the first cell."""
     some = share > _NEGLIGIBLE * share.sum()
     share, gap, height = share[some], gap[some], np.maximum(height[some], 1e-3 * first)
     narrow, b = 1 / height, gap / height
@@ -337,12 +336,12 @@ def _density(
     density = np.zeros_like(at)
     ends = (first + gap) * narrow / np.sqrt(2), (first - gap) * narrow / np.sqrt(2)
     density[0] = share @ (erf(ends[0]) + erf(ends[1])) / (2 * first)
-    # single precision is twice as quick, and errs by 1e-6 of what is summed
+    # single precision is twice as fast, with a relative error of 1e-6
     last = int(np.searchsorted(at, np.max(gap + _FAR * height)))
     unit = factor.max()
     factor, b = (factor / unit).astype(np.float32), b.astype(np.float32)
     a = np.multiply.outer(at[1:last].astype(np.float32), narrow.astype(np.float32))
-    near = np.flatnonzero(b < _FAR)  # of what reaches back over u = 0
+    near = np.flatnonzero(b < _FAR)  # Gaussians that extend across u = 0
     back = _bell(a[:, near] + b[near]) @ factor[near]
     a -= b
     density[1:last] = unit * (_bell(a) @ factor + back)

@@ -56,7 +56,7 @@ class Elasticity:
         return Layer(self.thickness / length, self.poisson_ratio, self.compliance_share)
 
     def force(self, load: float) -> float:
-        """Return the normal force [N] of a load as the theory has it."""
+        """Return the normal force [N] of a load in the unit of the theory."""
         raise NotImplementedError
 
 
@@ -75,9 +75,9 @@ class LineContact(Elasticity):
     poisson_ratio
         Poisson's ratio of the flat [1], above -1 and at most 0.5.
     thickness
-        Of the flat [m], bonded to a rigid base; infinite is a half-space.
+        Thickness of the flat [m], bonded to a rigid base; infinite for a half-space.
     counter_modulus, counter_poisson_ratio
-        Those of the cylinder; infinite is rigid.
+        Modulus [Pa] and Poisson's ratio of the cylinder; infinite modulus: rigid.
 
     Examples
     --------
@@ -99,7 +99,7 @@ class LineContact(Elasticity):
     is_round: ClassVar[bool] = False
 
     def load(self, normal_force: str | float) -> float:
-        """Load F_N/L [N/m] of a normal force [N]."""
+        """Return the load F_N/L [N/m] of a normal force [N]."""
         return to_si(normal_force, "N", name="normal_force") / self.length
 
     def force(self, load: float) -> float:
@@ -135,7 +135,7 @@ class PointContact(Elasticity):
     is_round: ClassVar[bool] = True
 
     def load(self, normal_force: str | float) -> float:
-        """Load of the theory, the normal force F_N [N] itself."""
+        """Return the load of the theory, which for a ball is the normal force F_N [N]."""
         return to_si(normal_force, "N", name="normal_force")
 
     def force(self, load: float) -> float:
@@ -152,12 +152,12 @@ def make_contact(geometry: str = "cylinder", **known: float) -> Contact:
 
 
 def plane_strain_ratio(value: str | float) -> float:
-    """Poisson's ratio as a float; 0.5 (rubber) is allowed.
+    """Return Poisson's ratio as a float; 0.5 (rubber) is allowed.
 
     Raises
     ------
     AnalysisError
-        If it does not lie above -1 and at or below 0.5.
+        If it is not above -1 and at most 0.5.
     """
     ratio = to_si(value if isinstance(value, str) else float(value), "1", name="poisson_ratio")
     if not -1 < ratio <= 0.5:

@@ -9,8 +9,8 @@ import numpy as np
 
 Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
-_ROUGH, _FINE = 1e-4, 1e-11  # values that are as good as zero: of the cheap functions, of the dear
-_SIDE = 1e-3  # of the bracket, over which the cheap function tells its slope
+_ROUGH, _FINE = 1e-4, 1e-11  # tolerances of zero: cheap functions, expensive functions
+_SIDE = 1e-3  # of the bracket, over which the slope of the cheap function is computed
 _SECANTS = 12
 
 
@@ -25,28 +25,28 @@ class Root(NamedTuple):
 def guided_root(
     dear: Functions, cheap: Functions, low: np.ndarray, high: np.ndarray, iterations: int
 ) -> Root:
-    """Find the root of each function between two ends, guided by a cheap function.
+    """Return the root of each function between two ends, guided by a cheap function.
 
     Parameters
     ----------
     dear, cheap
-        Called as ``dear(x, which)`` with the numbers of the functions that are asked for; the last
-        call of the dear one for each is at its root.
+        Called as ``dear(x, which)`` with the indices of the functions; the last call of the
+        expensive function (`dear`) is at its root.
     low, high
-        Ends between which the functions change their sign once (k).
+        Ends between which each function changes sign once (k).
     iterations
         Largest number of steps of each search.
 
     Returns
     -------
     Root
-        A value that is not nearly zero says that the search failed.
+        The search failed if a value is not nearly zero.
 
     Notes
     -----
-    The root of the cheap function is bracketed [1]_. From there on go secants of the dear one, the
-    first with the slope of the cheap one, inside what brackets the root by then. Where they do not
-    come to it in a few steps the dear function is bracketed, too.
+    The root of the cheap function is bracketed [1]_. From there secants of the expensive function
+    are used within the current bracket, the first with the slope of the cheap one. If they do not
+    converge in a few steps, the root of the expensive function is bracketed, too.
 
     References
     ----------
@@ -62,8 +62,8 @@ def guided_root(
     array([1.414214, 1.732051])
     """
     every = np.arange(low.size)
-    start, *_ = _bracketed(cheap, low, high, every, iterations, _ROUGH)
-    outside = np.flatnonzero(np.isnan(start))  # the cheap one vanishes just beyond an end
+    start, *_ = _find_bracketed(cheap, low, high, every, iterations, _ROUGH)
+    outside = np.flatnonzero(np.isnan(start))  # the root of the cheap function is just outside
     if outside.size:
         ends = np.array([low[outside], high[outside]])
         size = np.abs([cheap(end, outside) for end in ends])
@@ -74,13 +74,13 @@ def guided_root(
     x, value, steps = _by_secants(dear, start, slope, low, high, min(_SECANTS, iterations))
     lost = np.flatnonzero(~(np.abs(value) < _FINE))
     if lost.size:
-        again = _bracketed(dear, low[lost], high[lost], lost, iterations, _FINE)
+        again = _find_bracketed(dear, low[lost], high[lost], lost, iterations, _FINE)
         x[lost], steps[lost] = again.x, steps[lost] + again.steps
         value[lost] = dear(x[lost], lost)
     return Root(x, value, steps)
 
 
-def _bracketed(
+def _find_bracketed(
     functions: Functions,
     low: np.ndarray,
     high: np.ndarray,
@@ -88,8 +88,8 @@ def _bracketed(
     iterations: int,
     close: float,
 ) -> Root:
-    """Find roots between two ends by Chandrupatla's method."""
-    # late: scipy takes long to load
+    """Return roots between two ends by Chandrupatla's method."""
+    # imported late: scipy takes long to load
     from scipy.optimize.elementwise import find_root
 
     root = find_root(
@@ -110,7 +110,7 @@ def _by_secants(
     high: np.ndarray,
     steps: int,
 ) -> Root:
-    """Continue by secants from points with known slope."""
+    """Return roots continued by secants from points with known slope."""
     x, low, high, slope = (part.copy() for part in (start, low, high, slope))
     value, taken = np.full_like(x, np.nan), np.zeros(x.size, dtype=int)
     todo = np.arange(x.size)

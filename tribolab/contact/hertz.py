@@ -15,12 +15,12 @@ from tribolab.units.conversion import to_si
 
 
 def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
-    """Half-width a of a Hertz line contact, or radius a of a point contact.
+    """Return the half-width a of a Hertz line contact, or the radius a of a point contact.
 
     Parameters
     ----------
     load
-        F_N/L [N/m], of a ball F_N [N] (any dims), not negative; text with a unit if scalar.
+        F_N/L [N/m], for a ball F_N [N] (any dims), not negative; text with a unit if scalar.
     contact
         Geometry and elasticity.
 
@@ -36,9 +36,10 @@ def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | fl
 
     Notes
     -----
-    ``a = sqrt(4 R F / (pi E* L))``, Eq. (16) of [1]_; of a ball ``(3 F R/(4 E*))^(1/3)``. On a
-    layer (`tribolab.contact.layer`) it is that of the smooth contact there. Section 5 of [1]_
-    prints 37 mm for what Eq. (16) makes 3.7 mm; its own Appendix B has the width 2a = 7.43 mm.
+    ``a = sqrt(4 R F / (pi E* L))``, Eq. (16) of [1]_; for a ball ``(3 F R/(4 E*))^(1/3)``. On a
+    layer (`tribolab.contact.layer`) it is that of the smooth contact with the layer. Section 5 of
+    [1]_ prints 37 mm, but Eq. (16) gives 3.7 mm, in agreement with the width 2a = 7.43 mm in its
+    Appendix B.
 
     References
     ----------
@@ -58,14 +59,14 @@ def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | fl
 
 
 def hertz_max_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
-    """Maximum pressure [Pa], ``2 F/(pi a L)`` or ``3 F/(2 pi a^2)`` for a ball."""
+    """Return the maximum pressure [Pa], ``2 F/(pi a L)`` or ``3 F/(2 pi a^2)`` for a ball."""
     if contact.thickness < np.inf:
         return _smooth(load, contact)[1]
     return (1.5 if contact.is_round else 4 / np.pi) * hertz_mean_pressure(load, contact)
 
 
 def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
-    """Mean pressure [Pa], ``F / (2 a L)`` or ``F/(pi a^2)`` for a ball: nominal pressure.
+    """Return the nominal pressure [Pa]: mean ``F / (2 a L)``, or ``F/(pi a^2)`` for a ball.
 
     Examples
     --------
@@ -74,7 +75,7 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray |
     >>> hertz_mean_pressure([310.0, 2110.0], contact).round(-2)
     array([ 41700., 108800.])
     """
-    # F/(2a) with F put in terms of a, so that no load gives 0 and not 0/0
+    # F/(2a) in terms of a: zero load gives 0, not 0/0
     a = hertz_half_width(load, contact)
     if contact.thickness < np.inf:
         force = _loads(load, contact)
@@ -88,7 +89,7 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray |
 def _smooth(
     load: str | ArrayLike, contact: Contact
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
-    """Half-width [m] and maximum pressure [Pa], the latter only for a layer."""
+    """Return the half-width [m] and maximum pressure [Pa], the latter only for a layer."""
     force = _loads(load, contact)
     if np.any(force < 0):
         raise AnalysisError(
@@ -120,9 +121,9 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 
 
 def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndarray | float:
-    """Pressure [Pa] of a Hertz contact at x [m] (any dims) from its centre; 0 outside.
+    """Return the pressure [Pa] of a Hertz contact at x [m] (any dims) from its centre; 0 outside.
 
-    On a layer it is the same half ellipse over the contact's width there, with the load's integral.
+    On a layer it is a half ellipse over the width of that contact, with the same load.
     """
     a = hertz_half_width(load, contact)
     inside = np.maximum(a**2 - np.asarray(x, dtype=float) ** 2, 0)
@@ -134,7 +135,7 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 
 
 def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
-    """Smallest load [N/m], or [N] for a ball, of an adhesive contact; negative is a pull.
+    """Return the smallest load [N/m] ([N] for a ball) of an adhesive contact; negative is a pull.
 
     Parameters
     ----------
@@ -145,8 +146,8 @@ def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
 
     Notes
     -----
-    The minimum of Eq. (15), ``-(3/4) sqrt(2 pi E* w a)`` at ``a = (2 R^2 w / (pi E*))^(1/3)``;
-    of a ball ``-1.5 pi w R``.
+    The minimum of Eq. (15), ``-(3/4) sqrt(2 pi E* w a)`` at ``a = (2 R^2 w / (pi E*))^(1/3)``; for
+    a ball ``-1.5 pi w R``.
 
     Examples
     --------
@@ -155,23 +156,23 @@ def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
     >>> f"{jkr_smallest_load(contact, '64 mJ/m^2'):.2f} N/m"
     '-14.49 N/m'
     """
-    w = _adhesive(contact, work_of_adhesion)
+    w = _checked_work(contact, work_of_adhesion)
     if contact.is_round:
         return -1.5 * np.pi * w * contact.radius
     return float(
-        -0.75 * np.sqrt(2 * np.pi * contact.effective_modulus * w * _detaching(contact, w))
+        -0.75 * np.sqrt(2 * np.pi * contact.effective_modulus * w * _smallest_width(contact, w))
     )
 
 
 def jkr_half_width(
     load: str | ArrayLike, contact: Contact, work_of_adhesion: str | float
 ) -> np.ndarray | float:
-    """Half-width or radius a of an adhesive (JKR) contact, on the branch that ends in Hertz.
+    """Return the half-width or radius a of a JKR contact, on the branch that approaches Hertz.
 
     Parameters
     ----------
     load
-        F_N/L [N/m], of a ball F_N [N] (any dims), negative when pulled; text with a unit if scalar.
+        F_N/L [N/m], for a ball F_N [N] (any dims), negative if pulled; text with a unit if scalar.
     contact
         Geometry and elasticity.
     work_of_adhesion
@@ -185,14 +186,14 @@ def jkr_half_width(
     Raises
     ------
     AnalysisError
-        If a load is below the smallest one that has a solution; the message gives that load.
+        If a load is below the smallest possible one; the message gives that load.
 
     Notes
     -----
     Eq. (15) of [1]_, ``F/L = pi E* a^2/(4R) - sqrt(2 pi E* a w)``. With a = a_m b^2, a_m the
-    half-width at the smallest load, it reads ``b^4 - 4 b = -3 F/F_min``, convex for b > 1, so that
-    Newton's method from above cannot miss. Of a ball
-    ``a^3 = (3R/4E*) [F + 3 pi w R + sqrt(6 pi w R F + (3 pi w R)^2)]``.
+    half-width at the smallest load, it becomes ``b^4 - 4 b = -3 F/F_min``, convex for b > 1, so
+    that Newton's method from above always converges. For a ball ``a^3 = (3R/4E*) [F + 3 pi w R +
+    sqrt(6 pi w R F + (3 pi w R)^2)]``.
 
     References
     ----------
@@ -206,7 +207,7 @@ def jkr_half_width(
     >>> f"{1e3 * jkr_half_width('310 N/m', contact, '64 mJ/m^2'):.2f} mm"
     '4.04 mm'
     """
-    w = _adhesive(contact, work_of_adhesion)
+    w = _checked_work(contact, work_of_adhesion)
     if w == 0:
         return hertz_half_width(load, contact)
     force = _loads(load, contact)
@@ -224,22 +225,22 @@ def jkr_half_width(
         return radius
     phi = np.maximum(3 * force / -smallest, -3.0)
     b = np.maximum(phi, 0.0) ** 0.25 + 4 ** (1 / 3)
-    for _ in range(80):  # quadratic, but linear with rate 1/2 at the smallest load itself
+    for _ in range(80):  # quadratic convergence, but linear with rate 1/2 at the smallest load
         steep = np.maximum(4 * (b**3 - 1), np.finfo(float).tiny)
         b, before = np.maximum(b - (b**4 - 4 * b - phi) / steep, 1.0), b
         if np.allclose(b, before, rtol=1e-15, atol=0):
             break
-    half_width = (_detaching(contact, w) * b**2)[()]
+    half_width = (_smallest_width(contact, w) * b**2)[()]
     examine("jkr_half_width", half_width=half_width / contact.radius)
     return half_width
 
 
-def _detaching(contact: Contact, w: float) -> float:
-    """Half-width at the smallest load, where Eq. (15) has its minimum."""
+def _smallest_width(contact: Contact, w: float) -> float:
+    """Return the half-width at the smallest load, where Eq. (15) has its minimum."""
     return (2 * contact.radius**2 * w / (np.pi * contact.effective_modulus)) ** (1 / 3)
 
 
-def _adhesive(contact: Contact, work_of_adhesion: str | float) -> float:
+def _checked_work(contact: Contact, work_of_adhesion: str | float) -> float:
     """Return the work of adhesion; AnalysisError on a layer, where JKR is not valid."""
     work = _work(work_of_adhesion)
     if work and contact.thickness < np.inf:

@@ -10,8 +10,8 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-_HIGHEST = 24.0  # q d, from where on the layer yields as a half-space to 1e-18
-_FAR = 12.0  # thicknesses, from where on a line sees the base as rigid
+_HIGHEST = 24.0  # q d above which the layer equals a half-space to 1e-18
+_FAR = 12.0  # thicknesses beyond which the base is rigid for a line
 
 
 class Layer(NamedTuple):
@@ -19,11 +19,11 @@ class Layer(NamedTuple):
 
     thickness: float
     poisson_ratio: float
-    share: float = 1.0  # of the contact's compliance: less than 1 if the other body yields, too
+    share: float = 1.0  # of the contact's compliance: less than 1 if the other body is elastic
 
 
 def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
-    """Displacement of a bonded layer relative to a half-space at x = q d (any shape).
+    """Return the displacement of a bonded layer relative to a half-space at x = q d (any shape).
 
     Notes
     -----
@@ -34,7 +34,7 @@ def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
     .. [1] K. L. Johnson, Contact Mechanics (1985), Sec. 5.8.
     """
     k = 3 - 4 * poisson_ratio
-    half = np.exp(-2 * x)  # all over exp(2x)/2
+    half = np.exp(-2 * x)  # numerator and denominator are divided by exp(2x)/2
     top = k * -np.expm1(-4 * x) - 4 * x * half
     rest = 2 * x**2 + 5 - 12 * poisson_ratio + 8 * poisson_ratio**2
     return np.asarray(top / (k * (1 + half**2) + 2 * rest * half))
@@ -42,7 +42,7 @@ def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
 
 @functools.lru_cache(maxsize=8)
 def _nodes(poisson_ratio: float, share: float) -> tuple[np.ndarray, np.ndarray]:
-    """Wavenumbers times thickness, and 1 - W with the weight of a sum over them."""
+    """Return wavenumbers times thickness, and 1 - W with the weight of a sum over them."""
     t, weight = np.polynomial.legendre.leggauss(24)
     panel = np.linspace(0, _HIGHEST, 25)
     k = (panel[:-1, None] + (1 + t) / 2 * np.diff(panel)[:, None]).ravel()
@@ -52,8 +52,8 @@ def _nodes(poisson_ratio: float, share: float) -> tuple[np.ndarray, np.ndarray]:
 
 @functools.lru_cache(maxsize=8)
 def _line_layer(poisson_ratio: float, share: float) -> tuple[CubicSpline, CubicSpline, float]:
-    """I(s) = int (1 - W)(1 - cos ks)/k dk, its integral, and I - share ln s far away."""
-    # late: starting stays quick
+    """Return I(s) = int (1 - W)(1 - cos ks)/k dk, its integral, and I - share ln s far away."""
+    # imported late for a fast start
     from scipy.interpolate import CubicSpline
 
     k, weight = _nodes(poisson_ratio, share)
@@ -65,9 +65,9 @@ def _line_layer(poisson_ratio: float, share: float) -> tuple[CubicSpline, CubicS
 
 
 def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndarray:
-    """Reduction of a line's half-space displacement by the base, for E* = 1 (n, n).
+    """Return the reduction of a line's displacement by the rigid base, for E* = 1 (n, n).
 
-    ``(2/pi) int_cell I(|x_i - x'|/d) dx'``: what is to be added to the logarithmic kernel.
+    ``(2/pi) int_cell I(|x_i - x'|/d) dx'``, to be added to the logarithmic kernel.
     """
     thickness, share = layer.thickness, layer.share
     _, integral, level = _line_layer(layer.poisson_ratio, share)
@@ -85,8 +85,8 @@ def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndar
 
 @functools.lru_cache(maxsize=8)
 def _round_layer(poisson_ratio: float, share: float) -> CubicSpline:
-    """G(s) = int (1 - W) J0(ks) dk; share/s far away."""
-    # late: starting stays quick
+    """Return G(s) = int (1 - W) J0(ks) dk; share/s far away."""
+    # imported late for a fast start
     from scipy.interpolate import CubicSpline
     from scipy.special import j0
 
@@ -99,7 +99,7 @@ def _round_layer(poisson_ratio: float, share: float) -> CubicSpline:
 def round_layer_kernel(
     radius: np.ndarray, faces: np.ndarray, sectors: int, layer: Layer
 ) -> np.ndarray:
-    """Reduction of the displacement of `kernel_around` by the base, for E* = 1."""
+    """Return the reduction of the displacement of `kernel_around` by the base, for E* = 1."""
     thickness = layer.thickness
     curve = _round_layer(layer.poisson_ratio, layer.share)
     t, weight = np.polynomial.legendre.leggauss(3)
@@ -122,12 +122,12 @@ def round_layer_kernel(
 
 
 def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[float, float]:
-    """Load and maximum pressure of a smooth line contact on a layer, for R = E* = 1.
+    """Return load and maximum pressure of a smooth line contact on a layer, for R = E* = 1.
 
     Notes
     -----
-    The pressure is ``sum b_n T_2n(t)/sqrt(1 - t^2)`` with sum b_n = 0, on which the logarithm acts
-    exactly; what the layer adds is smooth, and summed on Chebyshev's nodes.
+    The pressure is ``sum b_n T_2n(t)/sqrt(1 - t^2)`` with sum b_n = 0, for which the logarithmic
+    kernel is exact; the smooth contribution of the layer is summed on Chebyshev nodes.
     """
     curve, _, level = _line_layer(layer.poisson_ratio, layer.share)
     many = 4 * order
@@ -150,13 +150,13 @@ def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[f
 
 
 def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[float, float]:
-    """Load and maximum pressure of a smooth round contact on a layer, for R = E* = 1.
+    """Return load and maximum pressure of a smooth round contact on a layer, for R = E* = 1.
 
     Notes
     -----
-    With ``p(r) = -int_r^a phi'(t)/sqrt(t^2 - r^2) dt`` the layer makes
-    ``phi(t) - int_0^a k(t, s) phi(s) ds = (delta - t^2)/pi``, phi(a) = 0,
-    ``k = (2/pi) int (1 - W(qd)) cos qt cos qs dq``, and the load is 2 pi int phi dt.
+    With ``p(r) = -int_r^a phi'(t)/sqrt(t^2 - r^2) dt`` the equation for the layer is ``phi(t) -
+    int_0^a k(t, s) phi(s) ds = (delta - t^2)/pi``, phi(a) = 0, ``k = (2/pi) int (1 - W(qd)) cos qt
+    cos qs dq``, and the load is 2 pi int phi dt.
     """
     k, weight = _nodes(layer.poisson_ratio, layer.share)
     node, share = np.polynomial.legendre.leggauss(order)
@@ -177,20 +177,20 @@ def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[floa
 def layer_contact(
     load: float, layer: Layer, round_contact: bool, widest: float
 ) -> tuple[float, float]:
-    """Half-width and maximum pressure of a smooth contact on a layer, for R = E* = 1.
+    """Return half-width and maximum pressure of a smooth contact on a layer, for R = E* = 1.
 
     Parameters
     ----------
     load
-        Over R^2 E* (round) or R E* (line).
+        Load over R^2 E* (round) or R E* (line).
     layer
-        Its thickness over R.
+        Layer, with its thickness over R.
     round_contact
-        Whether the contact is round, or a line.
+        Whether the contact is round; else a line.
     widest
         Half-width on a half-space, over R.
     """
-    # late: starting stays quick
+    # imported late for a fast start
     from scipy.optimize import brentq
 
     of = round_layer_load if round_contact else line_layer_load

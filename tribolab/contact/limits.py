@@ -12,7 +12,7 @@ from tribolab.contact.separation import Separation
 from tribolab.core.validity import LIMITS, examine, together
 from tribolab.surface.moments import rms_slope
 
-_OF_OILS = 2e-8  # 1/Pa: viscosity over pressure, in its logarithm; of glycerol it is a third
+_OF_OILS = 2e-8  # 1/Pa, d ln(viscosity)/dp; a third of it for glycerol
 
 
 def line_limits(
@@ -29,18 +29,18 @@ def line_limits(
     Parameters
     ----------
     who
-        The function that asks, for its error.
+        Name of the calling function, for its error.
     contact, load, psd
         The contact, its loads F_N/L [N/m] or F_N [N], and the spectrum if it is rough.
     separation
-        Table of p(u), which the pressure should not leave.
+        Table of p(u), whose range the pressure should not exceed.
     speed, film
-        Sliding speeds [m/s] and film thicknesses [m] at them (speed, ...).
+        Sliding speeds [m/s] and their film thicknesses [m] (speed, ...).
 
     Raises
     ------
     AnalysisError
-        If the contact is beyond the second limit.
+        If the contact exceeds the second limit.
 
     Examples
     --------

@@ -20,12 +20,12 @@ from tribolab.core.errors import AnalysisError, Cure
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
-# The paper does not say how it measured its widths; where pressure falls to this part of its
-# maximum, both of them come out.
+# The paper does not define its contact width; this level of pressure, relative to the maximum,
+# reproduces both printed widths.
 WIDTH_LEVEL = 1e-3
 _STEPS = 100
-_CONVERGED = 1e-10  # of the maximum pressure, by which the last step may still have changed it
-_FLAT = 1e-6  # of h_rms: mean separation in what is complete contact
+_CONVERGED = 1e-10  # change of the last step, relative to the maximum pressure
+_FLAT = 1e-6  # of h_rms: mean separation of complete contact
 
 
 @over_dims(psd=("wavenumber",))
@@ -37,7 +37,7 @@ def rough_line_contact(
     points: int = 401,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Pressure and mean separation across a dry, rough line contact at rest.
+    """Return pressure and mean separation across a dry, rough line contact at rest.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def rough_line_contact(
     gamma
         Elastic-energy reduction factor [1] of the mean separation.
     points
-        Cells across the domain; odd, so that one lies in the middle.
+        Cells across the domain; odd, so that one is in the middle.
     area
         Theory of the contact area, see `contact_area_ratio`.
 
@@ -59,22 +59,22 @@ def rough_line_contact(
     xarray.Dataset
         Over ``x`` [m]: ``pressure`` [Pa], ``separation`` [m], ``contact_area_ratio`` [1]; and the
         scalars ``max_pressure`` [Pa], ``central_separation`` [m] and ``contact_width`` [m], the
-        distance between the points where pressure is 1e-3 of its maximum (inferred: the paper
-        prints no definition, and this one gives its widths). The attributes hold ``residual`` (of
-        p - p(u), in units of the maximum pressure), ``load_balance`` (relative) and ``steps``.
+        distance between the points where pressure is 1e-3 of its maximum (inferred: the paper has
+        no definition, and this one reproduces its widths). Attributes: ``residual`` (of p - p(u),
+        in units of the maximum pressure), ``load_balance`` (relative) and ``steps``.
 
     Raises
     ------
     AnalysisError
-        If the load is not positive, the surface has no roughness or is pressed flat (use
+        If the load is not positive, the surface has no roughness or is flattened (use
         `hertz_pressure`), there are fewer than 21 points, or the iteration does not converge.
 
     Notes
     -----
     Eqs. (9) and (10) of [1]_ with p = p_cont(u), whose kernel is integrated exactly over each cell
-    and scaled by the width of the domain: ``u = c + x^2/(2R) + K p``, the constant going into c.
-    The energy ``p K p / 2 + int_u^inf p_cont du`` is convex in (u, c), so Newton's method with a
-    line search on its directional derivative cannot fail to reach the one solution.
+    and scaled by the width of the domain: ``u = c + x^2/(2R) + K p``, where c includes the
+    constant. The energy ``p K p / 2 + int_u^inf p_cont du`` is convex in (u, c), so Newton's method
+    with a line search on its directional derivative converges to the unique solution.
 
     References
     ----------
@@ -136,7 +136,7 @@ class LineProfile(NamedTuple):
 
 
 def solve_line(force: float, contact: LineContact, table: Separation, points: int) -> LineProfile:
-    """Solve `rough_line_contact` at a load [N/m] on a table of the surface's separation."""
+    """Return the solution of `rough_line_contact` at a load [N/m] on a table of the separation."""
     x = _cells(force, contact, table.decay_length, points)
     width = np.full(points, x[1] - x[0])
     kernel = line_kernel(x, width, contact.effective_modulus)
@@ -149,20 +149,20 @@ def solve_line(force: float, contact: LineContact, table: Separation, points: in
 
 
 def line_kernel(x: np.ndarray, width: np.ndarray, effective_modulus: float) -> np.ndarray:
-    """Displacement [m/Pa] at x_i from unit pressure in cell j, by the log kernel of Eq. (9).
+    """Return the displacement [m/Pa] at x_i by unit pressure in cell j, log kernel of Eq. (9).
 
     Parameters
     ----------
     x, width
-        Middles and widths of the cells [m] (n).
+        Centres and widths of the cells [m] (n).
     effective_modulus
         E* [Pa].
 
     Returns
     -------
     numpy.ndarray
-        ``-(2/(pi E*)) int_cell ln(|x_i - x'| / l) dx'`` (n, n), l being the width of the domain
-        so that every element is positive; another l only shifts the constant of Eq. (9).
+        ``-(2/(pi E*)) int_cell ln(|x_i - x'| / l) dx'`` (n, n), l being the width of the domain, so
+        that all elements are positive; another l only shifts the constant of Eq. (9).
     """
     scale = x[-1] - x[0] + width.mean()
 
@@ -176,9 +176,9 @@ def line_kernel(x: np.ndarray, width: np.ndarray, effective_modulus: float) -> n
 
 
 def contact_width(x: np.ndarray, pressure: np.ndarray, level: float = WIDTH_LEVEL) -> float:
-    """Distance [m] between the outermost points where pressure is `level` of its maximum.
+    """Return the distance [m] between the outermost points with `level` of the maximum pressure.
 
-    Between cells ln p is a straight line.
+    ln p is interpolated linearly between cells.
     """
     with np.errstate(divide="ignore"):
         logs = np.log(pressure / (level * pressure.max()))
@@ -196,10 +196,10 @@ def contact_width(x: np.ndarray, pressure: np.ndarray, level: float = WIDTH_LEVE
 
 
 def _cells(force: float, contact: LineContact, decay_length: float, points: int) -> np.ndarray:
-    """Centres of equal cells, out to a pressure of 1e-12 of its maximum.
+    """Return the centres of equal cells, out to a pressure of 1e-12 of its maximum.
 
-    Beyond the Hertz contact u grows faster than (x^2 - a^2)/2R would without elasticity nearby, and
-    p falls as exp(-u/u0): x^2 = a^2 + 2 R u0 ln(1e12) is far enough.
+    Outside the Hertz contact u increases faster than (x^2 - a^2)/2R, and p falls as exp(-u/u0): x^2
+    = a^2 + 2 R u0 ln(1e12) is sufficient.
     """
     a2 = hertz_half_width(force, contact) ** 2
     end = np.sqrt(max(a2 + 2 * contact.radius * decay_length * np.log(1e12), 1.44 * a2))
@@ -215,12 +215,12 @@ def solve_dry(
     table: Separation,
     kernel: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """Solve p = p_cont(c + gap + K p) for a given load; returns p, u, steps, residual.
+    """Return p, u, steps and residual of p = p_cont(c + gap + K p) for a given load.
 
     Parameters
     ----------
     gap, weight, hertz
-        Of the undeformed bodies [m], areas (of a line lengths), and pressure [Pa] to start from,
+        Gap of the undeformed bodies [m], areas (lengths for a line), and starting pressure [Pa],
         all over the cells.
     """
     p = hertz
@@ -237,7 +237,7 @@ def solve_dry(
         target, slope = table.pressure_and_slope(c + shape)
         factor = lu_factor(np.eye(p.size) - slope[:, None] * kernel)
         both = lu_solve(factor, np.stack([target - p, slope], axis=1))
-        # the load stays what it is: the sum of a + b dc over the cells is what it lacks now
+        # the load is fixed: the sum of a + b dc over the cells equals its present deficit
         dc = ((force - weight @ p) - weight @ both[:, 0]) / (weight @ both[:, 1])
         dp = both[:, 0] + both[:, 1] * dc
         t = _line_search(p, c + shape, dp, dc + kernel @ dp, weight, table)
@@ -262,10 +262,10 @@ def _line_search(
     weight: np.ndarray,
     table: Separation,
 ) -> float:
-    """Step length, at most 1, along a Newton step to the energy minimum.
+    """Return the step length, at most 1, along a Newton step to the energy minimum.
 
     The energy's derivative along the step is ``sum (p - p_cont(u)) du``; it is negative at the
-    start and grows steadily, so a few secant steps inside a bracket find its zero.
+    start and increases monotonically, so a few secant steps within a bracket find its zero.
     """
     falling = du < 0
     limit = 0.99 * np.min(-u[falling] / du[falling]) if falling.any() else np.inf

@@ -41,20 +41,20 @@ def contact_area_ratio(
     effective_modulus: str | float,
     area: AreaTheory = "persson",
 ) -> Pressure:
-    """Relative contact area A/A0 in Persson's theory without adhesion, or corrected.
+    """Return the relative contact area A/A0 in Persson's theory without adhesion, or corrected.
 
     Parameters
     ----------
     pressure
         Nominal pressure [Pa] (any dims), not negative; text with a unit if scalar.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further
-        dims, which the result has, too.
+        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further dims,
+        which become dims of the result.
     effective_modulus
         E* [Pa].
     area
-        ``"persson"``; ``"corrected"`` by the elastic energy that partial contact saves, which comes
-        within 5 % of boundary elements; or ``"numerics"``, fitted to those.
+        ``"persson"``; ``"corrected"`` for the reduced elastic energy of partial contact, within 5 %
+        of boundary-element results; or ``"numerics"``, fitted to these.
 
     Returns
     -------
@@ -65,13 +65,13 @@ def contact_area_ratio(
     Raises
     ------
     AnalysisError
-        If a pressure is negative, E* is not positive or the spectrum is none.
+        If a pressure is negative, E* is not positive or the spectrum is invalid.
 
     Notes
     -----
-    ``A/A0 = erf(1 / (2 sqrt(G)))``, ``G = (E*/p)^2 (pi/4) int q^3 C dq``: Eqs. (6) and (7) of
-    [1]_. Boundary-element runs on random surfaces give 15 to 40 % more, most at small area; the
-    other theories of `tribolab.contact.area` mend that.
+    ``A/A0 = erf(1 / (2 sqrt(G)))``, ``G = (E*/p)^2 (pi/4) int q^3 C dq``: Eqs. (6) and (7) of [1]_.
+    Boundary-element results for random surfaces are 15 to 40 % higher, most at small area; the
+    other theories of `tribolab.contact.area` correct this.
 
     References
     ----------
@@ -92,7 +92,7 @@ def contact_area_ratio(
     valid = examine("contact_area_ratio", slope=np.sqrt(2 * np.pi * slope))
     values = pressure_values(pressure)
     ratio = _area(values, modulus * np.sqrt(np.pi * slope), area)
-    return _with(like(ratio, pressure, "contact_area_ratio"), valid)
+    return _add_validity(like(ratio, pressure, "contact_area_ratio"), valid)
 
 
 def apparent_contact_area_ratio(
@@ -101,7 +101,7 @@ def apparent_contact_area_ratio(
     effective_modulus: str | float,
     area: AreaTheory = "persson",
 ) -> xr.DataArray:
-    """Apparent contact area ratio P(q) = A(q)/A0 at every wavenumber of the spectrum.
+    """Return the apparent contact area ratio P(q) = A(q)/A0 at every wavenumber.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def apparent_contact_area_ratio(
 
     Notes
     -----
-    Eqs. (6) and (7) with q for the upper limit q1.
+    Eqs. (6) and (7) with q as the upper limit q1.
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     stiffness = modulus * np.sqrt(np.pi * cumulative(*spectrum_arrays(psd), 3))
@@ -128,7 +128,7 @@ def apparent_contact_area_ratio(
         coords={**over.coords, "wavenumber": q},
         dims=(*over.dims, "wavenumber"),
     )
-    return _with(stamp_array(ratio, "contact_area_ratio"), valid)
+    return _add_validity(stamp_array(ratio, "contact_area_ratio"), valid)
 
 
 @over_dims(psd=("wavenumber",))
@@ -138,7 +138,7 @@ def mean_separation(
     effective_modulus: str | float,
     gamma: float = 0.45,
 ) -> Pressure:
-    """Mean interfacial separation of a rough contact, by quadrature over the spectrum.
+    """Return the mean interfacial separation of a rough contact, by quadrature over the spectrum.
 
     Parameters
     ----------
@@ -165,9 +165,9 @@ def mean_separation(
     Notes
     -----
     ``u(p) = 2 int (ds/q) F(p / (E* sqrt(pi) s))`` with ``s(q)^2 = int_{q0}^q q'^3 C dq'`` and
-    ``F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2)``. At small pressure
-    ``p ~ exp(-u/u0)`` with ``u0 = 2 gamma int ds/q``. Eq. (8) of [3]_ is a sketch of that:
-    its alpha is h_rms/u0, about 1.8; the 0.5 printed there is 1/alpha.
+    ``F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2)``. At small pressure ``p ~
+    exp(-u/u0)`` with ``u0 = 2 gamma int ds/q``. Eq. (8) of [3]_ is an approximation: its alpha is
+    h_rms/u0, about 1.8; the printed 0.5 is 1/alpha.
 
     References
     ----------
@@ -193,22 +193,22 @@ def mean_separation(
     values = pressure_values(pressure)
     flat = values.ravel() / (ROOT_PI * modulus)
     separation = np.empty_like(flat)
-    for part in range(0, flat.size, 128):  # bounds the memory of pressures times wavenumbers
+    for part in range(0, flat.size, 128):  # limits the memory for pressures times wavenumbers
         piece = flat[part : part + 128, None]
         separation[part : part + 128] = tail(piece / slope, gamma) @ weight
-    return _with(like(separation.reshape(values.shape), pressure, "separation"), valid)
+    return _add_validity(like(separation.reshape(values.shape), pressure, "separation"), valid)
 
 
-def _with(result: Pressure, valid: dict[str, str]) -> Pressure:
-    """Add the validity attributes to a result that has attributes."""
+def _add_validity(result: Pressure, valid: dict[str, str]) -> Pressure:
+    """Return a result with the validity attributes, if it has attributes."""
     return result.assign_attrs(valid) if isinstance(result, xr.DataArray) else result
 
 
 def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes s and weights w for integrals ``2 int (ds/q) f(s)`` over a spectrum.
+    """Return nodes s and weights w for integrals ``2 int (ds/q) f(s)`` over a spectrum.
 
     Gauss-Legendre in ln q on every bin. In the first bin s starts from 0 like a square root, which
-    the substitution ln q = ln q0 + L t^2 takes away.
+    the substitution ln q = ln q0 + L t^2 removes.
 
     Raises
     ------
@@ -240,8 +240,8 @@ def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, n
 def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Return q and C as `spectrum_arrays`, without zeros at the ends except next to roughness.
 
-    No moment changes, since C is linear in the bin beside a zero; what is 0/0 where nothing is
-    rough, such as the gap that opens there, is never asked for.
+    Moments do not change, because C is linear in the bin next to a zero; this avoids 0/0 in ranges
+    without roughness, e.g. for the opening gap.
     """
     q, spectrum = spectrum_arrays(psd)
     rough = np.flatnonzero(spectrum)
@@ -252,12 +252,12 @@ def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def tail(y: np.ndarray, gamma: float) -> np.ndarray:
-    """F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2), to 1e-8 relative."""
+    """Return F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2), to 1e-8."""
     spline, lowest, highest = _tail_table(float(gamma))
     with np.errstate(divide="ignore"):
         x = np.log(y)
     result = np.exp(spline(np.clip(x, lowest, highest)))
-    result = result + gamma * np.maximum(lowest - x, 0)  # F goes like -gamma ln y at small y
+    result = result + gamma * np.maximum(lowest - x, 0)  # F ~ -gamma ln y at small y
     return np.where(x > highest, 0.0, result)
 
 
@@ -270,13 +270,13 @@ def coarse_tail(log_y: np.ndarray, gamma: float) -> np.ndarray:
 
 
 def tail_slope(y: np.ndarray, gamma: float) -> np.ndarray:
-    """-dF/d(ln y) = [gamma + 3 (1 - gamma) erf(y)^2] exp(-y^2)."""
+    """Return -dF/d(ln y) = [gamma + 3 (1 - gamma) erf(y)^2] exp(-y^2)."""
     return (gamma + 3 * (1 - gamma) * erf(y) ** 2) * np.exp(-np.minimum(y * y, 745.0))
 
 
 @functools.lru_cache(maxsize=8)
 def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
-    """Ln F over ln y with exact slopes; gamma's part is an exponential integral."""
+    """Return ln F over ln y with exact slopes; gamma's part is an exponential integral."""
     if not 0 < gamma <= 1:
         raise AnalysisError(f"gamma: a value above 0 and at most 1 is wanted; got {gamma:g}")
     x = np.linspace(-12.0, np.log(26.0), 1601)
@@ -284,7 +284,7 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
     half = (x[1] - x[0]) / 2
     y = np.exp(x[:-1, None] + half * (1 + t))
     pieces = half * (erf(y) ** 2 * np.exp(-y * y)) @ weight
-    last = exp1(np.exp(2 * x[-1])) / 2  # erf is 1 from there on
+    last = exp1(np.exp(2 * x[-1])) / 2  # erf is 1 beyond this point
     both = np.cumsum(np.concatenate([[last], pieces[::-1]]))[::-1]
     value = gamma / 2 * exp1(np.exp(2 * x)) + 3 * (1 - gamma) * both
     slope = -tail_slope(np.exp(x), gamma) / value
@@ -293,14 +293,14 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
 
 @functools.lru_cache(maxsize=8)
 def _coarse_table(gamma: float) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """F on equal steps of ln y and its differences: level below the first, 0 beyond the last."""
+    """Return F on equal steps of ln y and its differences: constant below, 0 beyond the last."""
     x, step = np.linspace(-25.0, np.log(26.0), 14001, retstep=True)
     values = np.append(tail(np.exp(x[:-1]), gamma), 0.0)
     return values, np.diff(values, append=0.0), float(x[0]), float(1 / step)
 
 
 def _area(pressure: np.ndarray, stiffness: np.ndarray | float, area: AreaTheory) -> np.ndarray:
-    """Area at p/stiffness; stiffness 0 is a smooth surface, in contact at any pressure above 0."""
+    """Return the area at p/stiffness; stiffness 0 is a smooth surface, in contact if p > 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(pressure == 0, 0.0, area_of(pressure / stiffness, area))
 

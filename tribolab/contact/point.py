@@ -19,13 +19,13 @@ from tribolab.contact.separation import Separation, separation_table
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
-_SECTORS = 12  # of a mesh whose pressure depends on the radius alone
+_SECTORS = 12  # sectors of a mesh for pressure that depends only on the radius
 
 
 def across_the_middle(profile: xr.Dataset) -> xr.Dataset:
-    """Return a radial profile as one over x [m] through the centre.
+    """Return a radial profile as a profile over x [m] through the centre.
 
-    It has ``contact_width`` [m], the diameter where pressure is 1e-3 of its maximum.
+    ``contact_width`` [m] is the diameter at which pressure is 1e-3 of its maximum.
     """
     radius = profile["radial_distance"].values
     x = np.concatenate([-radius[::-1], radius])
@@ -60,7 +60,7 @@ def rough_point_contact(
     rings: int = 120,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Pressure and mean separation over the radius of a dry, rough point contact at rest.
+    """Return pressure and mean separation over the radius of a dry, rough point contact.
 
     Parameters
     ----------
@@ -69,20 +69,20 @@ def rough_point_contact(
     contact, psd, gamma, area
         As for `rough_line_contact`.
     rings
-        Cells from the middle out.
+        Cells from the middle outwards.
 
     Returns
     -------
     xarray.Dataset
         Over ``radius`` [m]: ``pressure`` [Pa], ``separation`` [m], ``contact_area_ratio`` [1]; and
         the scalars ``max_pressure`` [Pa], ``central_separation`` [m] and
-        ``friction_per_shear_stress`` [1/Pa], real area over the load. The attributes hold
-        ``residual``, ``load_balance`` and ``steps``, as those of `rough_line_contact`.
+        ``friction_per_shear_stress`` [1/Pa], real area over the load. Attributes: ``residual``,
+        ``load_balance`` and ``steps``, as for `rough_line_contact`.
 
     Notes
     -----
     ``u = c + r^2/(2R) + (1/pi E*) int p dA/|r - r'|`` with p = p_cont(u), by the same convex
-    Newton's method as the line's.
+    Newton's method as for the line.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def rough_point_contact(
     table = separation_table(psd, contact.effective_modulus, gamma)
     a = float(hertz_half_width(force, contact))
     edge = (table.decay_length * contact.radius / (1.9 * a**2 / 2)) ** (2 / 3)
-    # the pressure falls as exp(-u/u0): beyond, as for the line
+    # the pressure falls as exp(-u/u0) outside, as for the line
     end = np.sqrt(1 + 2 * contact.radius * table.decay_length * np.log(1e12) / a**2)
     layer = contact.layer(a)
     mesh = polar_mesh(rings, _SECTORS, min(float(edge), 0.5), 1.1 * float(end), 1.0, layer)
@@ -128,7 +128,7 @@ def rough_point_contact(
 def solve_rings(
     force: float, contact: PointContact, table: Separation, mesh: PolarMesh, length: float
 ) -> RoundProfile:
-    """Solve `rough_point_contact` on a mesh in units of a length [m]."""
+    """Return the solution of `rough_point_contact` on a mesh in units of a length [m]."""
     radius = mesh.radius * length
     area = np.pi * np.diff(mesh.faces**2) * length**2
     kernel = mesh.rings * (length / contact.effective_modulus)

@@ -10,45 +10,45 @@ from scipy.interpolate import PchipInterpolator
 
 from tribolab.contact.layer import Layer, round_layer_kernel
 
-_CHORDS = 4  # straight pieces in which a cell's arc is taken
-# Density of rings: at the contact's edge, inside it, and evenly in ln r far out
+_CHORDS = 4  # chords that approximate the arc of a cell
+# Density of rings: at the contact's edge, inside it, and evenly in ln r far from it
 _EDGE, _INSIDE, _FAR = 2.5, 6.0, 2.0
 
 
 class PolarMesh(NamedTuple):
     """Rings and equal sectors of the half plane y > 0, in units of the contact's radius.
 
-    A cell's number is ring * sectors + sector; the flow is towards +x, angle 0.
+    The index of a cell is ring * sectors + sector; the flow is towards +x, angle 0.
     """
 
-    faces: np.ndarray  # radii of the rings' ends (rings + 1)
-    radius: np.ndarray  # of the cells' middles (rings)
+    faces: np.ndarray  # boundaries of the rings (rings + 1)
+    radius: np.ndarray  # centres of the cells (rings)
     sectors: int
     area: np.ndarray  # of the cells, half plane (rings * sectors)
-    x: np.ndarray  # of the cells' middles (rings * sectors)
-    squared: np.ndarray  # r^2 there (rings * sectors)
-    kernel: np.ndarray  # film that bends away by unit pressure, for E* = 1 (cells, cells)
-    rings: np.ndarray  # the same for equal pressure all around a ring (rings, rings)
+    x: np.ndarray  # centres of the cells (rings * sectors)
+    squared: np.ndarray  # r^2 at the centres (rings * sectors)
+    kernel: np.ndarray  # displacement by unit pressure, for E* = 1 (cells, cells)
+    rings: np.ndarray  # the same for constant pressure along a ring (rings, rings)
 
 
 @functools.lru_cache(maxsize=6)
 def polar_mesh(
     rings: int, sectors: int, edge: float, end: float, size: float = 1.0, layer: Layer | None = None
 ) -> PolarMesh:
-    """Choose rings, fine at the edge of the contact, and compute their elasticity.
+    """Return rings, refined at the edge of the contact, with their elasticity.
 
     Parameters
     ----------
     rings, sectors
-        Their numbers; sectors are those of the half plane.
+        Number of rings, and of sectors of the half plane.
     edge
-        Length over which the film leaves the contact's edge, in its radius.
+        Length over which the film rises at the contact's edge, in contact radii.
     end
-        Radius where the liquid ends.
+        Radius at which the liquid ends.
     size
-        Radius of what is to be resolved: more than 1 where the film is thick.
+        Radius of the resolved region: more than 1 for a thick film.
     layer
-        An elastic layer on a rigid base, its thickness in the contact's radius.
+        An elastic layer on a rigid base, its thickness in contact radii.
     """
     at = np.unique(np.concatenate([
         np.linspace(0, 3, 3001),
@@ -58,7 +58,7 @@ def polar_mesh(
     at = at[(at >= 0) & (at <= end / size)]
     density = _EDGE / (np.abs(at - 1) + edge) + _INSIDE / (1 + at**4) + _FAR / (at + 0.3)
     count = np.append(0, np.cumsum(np.diff(at) * (density[1:] + density[:-1]) / 2))
-    count, kept = np.unique(count, return_index=True)  # samples may lie within rounding
+    count, kept = np.unique(count, return_index=True)  # samples may coincide within rounding
     faces = size * PchipInterpolator(count, at[kept])(np.linspace(0, count[-1], rings + 1))
     faces[[0, -1]] = 0.0, end
     radius = (faces[1:] + faces[:-1]) / 2
@@ -87,7 +87,7 @@ def polar_mesh(
 def kernel_around(
     radius: np.ndarray, faces: np.ndarray, sectors: int, layer: Layer | None = None
 ) -> np.ndarray:
-    """Displacement at (radius, 0) by unit pressure on cells centred there and around, E* = 1.
+    """Return the displacement at (radius, 0) by unit pressure on surrounding cells, for E* = 1.
 
     Returns
     -------
@@ -97,8 +97,8 @@ def kernel_around(
     Notes
     -----
     The potential of a polygon is ``sum_edges d [asinh(s2/|d|) - asinh(s1/|d|)]``, d being the
-    distance from the point to the edge's line and s that along it. An arc is `_CHORDS` chords; the
-    area that they cut off is put back by a factor.
+    distance from the point to the edge's line and s the position along it. An arc is approximated
+    by `_CHORDS` chords; a factor corrects their area.
     """
     delta = np.pi / sectors / _CHORDS
     r, rho = radius[:, None, None], faces[:, None]

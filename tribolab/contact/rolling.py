@@ -16,17 +16,17 @@ def rolling_friction(
     Parameters
     ----------
     load
-        F_N/L [N/m], of a ball F_N [N].
+        F_N/L [N/m], for a ball F_N [N].
     contact
         Geometry and elasticity.
     loss_share, counter_loss_share
-        Share alpha [1] of the elastic energy that the flat and the counter body lose in a cycle at
-        the frequency U/a.
+        Share alpha [1] of the elastic energy that the flat and the counter body dissipate per cycle
+        at the frequency U/a.
 
     Notes
     -----
-    ``sum alpha_i s_i 3 a/(16 R)``, of a line ``2 a/(3 pi R)``, s_i being a body's share of the
-    compliance [1]_.
+    ``sum alpha_i s_i 3 a/(16 R)``, for a line with ``2 a/(3 pi R)``, s_i being a body's share of
+    the compliance [1]_.
 
     References
     ----------

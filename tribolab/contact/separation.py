@@ -31,10 +31,10 @@ _MORE_THAN_EPS = 1e-14
 class Separation:
     """Contact pressure p(u) and its exact inverse u(p) for one rough surface.
 
-    Made by `separation_table`. Monotone everywhere: inside the table ln p is a cubic in
-    ``U = ln(exp(u/h_rms) - 1)`` with the theory's own slopes; at larger u it goes on as
-    ``p ~ exp(-u/decay_length)``, at smaller u as ``u ~ exp(-(p/p_1)^2)``, both with the slope that
-    the table ends with.
+    Made by `separation_table`. Monotone everywhere: inside the table ln p is a cubic in ``U =
+    ln(exp(u/h_rms) - 1)`` with the theory's own slopes; it is extrapolated at larger u as ``p ~
+    exp(-u/decay_length)``, at smaller u as ``u ~ exp(-(p/p_1)^2)``, both with the slope at the end
+    of the table.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Separation:
 
     @functools.cached_property
     def _with_slope(self) -> PPoly:
-        """Curve and its slope (2) from one look-up."""
+        """Curve and its slope (2) in one spline."""
         curve = self._curve
         both = np.zeros((*curve.c.shape, 2))
         both[..., 0], both[1:, :, 1] = curve.c, curve.derivative().c
@@ -72,7 +72,7 @@ class Separation:
         far, near = self._curve.x[[-1, 0]]
         slope = self._curve(far, 1) * self._chain(self.table_separation[0])
         pressure, separation = self.table_pressure[-1], self.table_separation[-1]
-        # d ln p/du = slope of the curve times dU/du; u ~ exp(-k p^2) has d ln u/d(p^2) = -k
+        # d ln p/du = slope of the curve times dU/du; for u ~ exp(-k p^2), d ln u/d(p^2) = -k
         steep = self._curve(near, 1) * self._chain(separation)
         return (
             float(np.log(self.table_pressure[0])),
@@ -83,11 +83,11 @@ class Separation:
         )
 
     def _chain(self, separation: np.ndarray) -> np.ndarray:
-        """dU/du = 1 / (h (1 - exp(-u/h)))."""
+        """Return dU/du = 1 / (h (1 - exp(-u/h)))."""
         return -1 / (self.rms_roughness * np.expm1(-separation / self.rms_roughness))
 
     def pressure(self, separation: str | Pressure) -> Pressure:
-        """Contact pressure p [Pa] at a mean separation u [m] (any dims); infinite at u = 0.
+        """Return the contact pressure [Pa] at a mean separation [m] (any dims); infinite at 0.
 
         Raises
         ------
@@ -98,7 +98,7 @@ class Separation:
         return like(self._evaluate(values)[0], separation, "pressure")
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pressure p [Pa] and dp/du [Pa/m], never positive, at mean separations u [m] (any shape).
+        """Return p [Pa] and dp/du [Pa/m], never positive, at mean separations u [m] (any shape).
 
         Raises
         ------
@@ -108,7 +108,7 @@ class Separation:
         return self._evaluate(self._separations(separation))
 
     def separation(self, pressure: str | Pressure) -> Pressure:
-        """Mean separation u [m] at a contact pressure p [Pa] (any dims); infinite at p = 0.
+        """Return the mean separation [m] at a contact pressure [Pa] (any dims); infinite at 0.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Separation:
         """
         values = pressure_values(pressure)
         log_far, slope_far, p_near, u_near, steep = self._ends
-        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # NaN stays NaN
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # NaN gives NaN
             log_p = np.log(values)
             u = self._invert(np.clip(log_p, log_far, np.log(p_near)))
             far = self.table_separation[0] + (log_p - log_far) / slope_far
@@ -146,7 +146,7 @@ class Separation:
             return pressure, pressure * slope
 
     def _invert(self, log_p: np.ndarray) -> np.ndarray:
-        """Solve the table's cubic for u by Newton's method within its interval."""
+        """Return u from the table's cubic, solved by Newton's method within its interval."""
         knots, curve = self._curve.x, self._curve
         levels = curve(knots)[::-1]
         cell = np.clip(np.searchsorted(levels, log_p, side="right") - 1, 0, levels.size - 2)
@@ -173,7 +173,7 @@ class Separation:
 def separation_table(
     psd: xr.Dataset, effective_modulus: str | float, gamma: float = 0.45, points: int = 120
 ) -> Separation:
-    """Tabulate the contact pressure over the mean separation for one surface.
+    """Return the contact pressure tabulated over the mean separation for one surface.
 
     Parameters
     ----------
@@ -200,8 +200,8 @@ def separation_table(
     Notes
     -----
     The theory is that of `tribolab.contact.persson.mean_separation`. The slopes of the table are
-    exact, ``du/d(ln p) = -2 int (ds/q) [gamma + 3 (1 - gamma) erf(y)^2] exp(-y^2)``; where they
-    are steeper than three times a chord they are cut to that, which keeps a cubic monotone [1]_.
+    exact, ``du/d(ln p) = -2 int (ds/q) [gamma + 3 (1 - gamma) erf(y)^2] exp(-y^2)``; slopes steeper
+    than three times a chord are limited to that, which keeps a cubic monotone [1]_.
 
     References
     ----------
@@ -219,7 +219,7 @@ def separation_table(
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     q, spectrum = rough_band(psd)
-    unit = _of_unit_modulus(q.tobytes(), spectrum.tobytes(), gamma, points)
+    unit = _unit_modulus_table(q.tobytes(), spectrum.tobytes(), gamma, points)
     coefficients = unit._curve.c.copy()
     coefficients[-1] += np.log(modulus)
     return replace(
@@ -231,14 +231,14 @@ def separation_table(
 
 
 @functools.lru_cache(maxsize=16)
-def _of_unit_modulus(
+def _unit_modulus_table(
     q_bytes: bytes, spectrum_bytes: bytes, gamma: float, points: int
 ) -> Separation:
-    """Tabulate a spectrum at E* = 1 Pa; the last few tables are cached."""
+    """Return the table of a spectrum at E* = 1 Pa; the last few tables are cached."""
     q, spectrum = np.frombuffer(q_bytes), np.frombuffer(spectrum_bytes)
     slope, weight = slope_quadrature(q, spectrum)
     height = float(np.sqrt(2 * np.pi * cumulative(q, spectrum, 1)[-1]))
-    # from where the asymptote holds to 1e-6 up to where u is below 1e-6 h_rms
+    # from the range in which the asymptote is accurate to 1e-6 to u below 1e-6 h_rms
     lowest = 1e-6 * min(q[0] * height, ROOT_PI * slope[-1])
     stiffness = np.concatenate(
         [

@@ -1,4 +1,4 @@
-"""Work of adhesion from surface energies: dry, and under a liquid, with its literature spread."""
+"""Work of adhesion from surface energies, dry and in a liquid, with its literature spread."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Works = TypeVar("Works", float, np.ndarray)
 
 
 def dry_work_of_adhesion(surface_energy_1: str | float, surface_energy_2: str | float) -> float:
-    """Work of adhesion of two dry solids from their surface energies.
+    """Return the work of adhesion of two dry solids from their surface energies.
 
     Parameters
     ----------
@@ -47,8 +47,8 @@ def dry_work_of_adhesion(surface_energy_1: str | float, surface_energy_2: str | 
 
     Notes
     -----
-    ``gamma_dry = 2 sqrt(gamma_1 gamma_2)``, Eq. (13) of [1]_: an estimate, good for solids that
-    attract each other by dispersion forces.
+    ``gamma_dry = 2 sqrt(gamma_1 gamma_2)``, Eq. (13) of [1]_: an estimate for solids that attract
+    each other by dispersion forces.
 
     References
     ----------
@@ -74,7 +74,7 @@ def wet_work_of_adhesion(
     contact_angle_1: str | float,
     contact_angle_2: str | float,
 ) -> float:
-    """Work of adhesion of two solids under a liquid.
+    """Return the work of adhesion of two solids in a liquid.
 
     Parameters
     ----------
@@ -88,12 +88,12 @@ def wet_work_of_adhesion(
     Returns
     -------
     float
-        gamma_wet [J/m2]. Negative where the liquid wets: it then keeps the solids apart.
+        gamma_wet [J/m2]. Negative if the liquid wets and separates the solids.
 
     Raises
     ------
     AnalysisError
-        If an energy is not positive or an angle lies outside 0 to 180 degrees.
+        If an energy is not positive or an angle is outside 0 to 180 degrees.
 
     Notes
     -----
@@ -148,7 +148,7 @@ class SurfaceEnergies:
     angle_2: StatedWork
 
     def __post_init__(self) -> None:
-        """Turn text into SI ranges and refuse bounds that do not hold the value."""
+        """Convert text to SI ranges and raise an error for bounds that exclude the value."""
         for field in fields(self):
             read = _angle if field.name.startswith("angle") else _energy
             stated = getattr(self, field.name)
@@ -173,7 +173,7 @@ class SurfaceEnergies:
 
     @property
     def wet(self) -> float:
-        """Work of adhesion under the liquid [J/m2], Eq. (14), at the chosen values."""
+        """Work of adhesion in the liquid [J/m2], Eq. (14), at the chosen values."""
         *_, liquid, angle_1, angle_2 = _ranges(self)
         return float(_wet(self.dry, liquid.value, angle_1.value, angle_2.value))
 
@@ -181,7 +181,7 @@ class SurfaceEnergies:
 def sample_work_of_adhesion(
     energies: SurfaceEnergies, samples: int = 1000, seed: int = 0
 ) -> np.ndarray:
-    """Draw dry and wet works of adhesion, each input uniform and independent between its bounds.
+    """Return random dry and wet works of adhesion, each input uniform between its bounds.
 
     Returns
     -------
@@ -196,7 +196,7 @@ def sample_work_of_adhesion(
 def work_of_adhesion_spread(
     energies: SurfaceEnergies | None = None, *, samples: int = 1000, seed: int = 0
 ) -> xr.Dataset:
-    """Dry and wet work of adhesion with the spread that uncertain surface energies give.
+    """Return the dry and wet work of adhesion with their spread due to uncertain energies.
 
     Parameters
     ----------
@@ -215,8 +215,8 @@ def work_of_adhesion_spread(
 
     Notes
     -----
-    Eqs. (13) and (14) are monotonic in each input, so the bounds are those of the corners: exact,
-    and they hold whatever the distribution. The chosen values need not lie in the middle.
+    Eqs. (13) and (14) are monotonic in each input, so the bounds are exact values at the corners,
+    for any distribution. The chosen values need not be in the middle.
 
     Examples
     --------
@@ -282,7 +282,7 @@ def _angle(value: str | float, name: str) -> float:
     return angle
 
 
-# Values and literature bounds of Sec. 5 of Xu et al. (2026). One value only is given there for the
+# Values and literature bounds of Sec. 5 of Xu et al. (2026), which gives only one value for the
 # surface tension of glycerol.
 PDMS_PMMA_GLYCEROL = SurfaceEnergies(
     solid_1=(22e-3, 19.4e-3, 24.3e-3),

@@ -92,9 +92,7 @@ def model_inputs(
         solver = replace(parameters.solver, method="auto")
     parameters = parameters._replace(solver=solver)
     rows = []
-    near: SolvedCurve | None = (
-        None  # the previous curve, which differs by a few percent, is the starting point
-    )
+    near: SolvedCurve | None = None  # start from the previous curve: it differs by a few percent
     for name, error in errors.items():
         ends = []
         for factor in (np.exp(_LN_STEP), np.exp(-_LN_STEP)):

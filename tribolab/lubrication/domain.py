@@ -1,4 +1,4 @@
-"""Scales and mesh for a speed, the solved part of the gap, and the drag outside it."""
+"""Scales and mesh for a speed, and the drag outside the solved domain."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from tribolab.lubrication.mesh import graded_mesh
 from tribolab.lubrication.mixed import Problem, Solution
 from tribolab.lubrication.parameters import Liquid
 
-_INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in reaches of the film
+_INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in units of the reach of the film
 _CLASS = 100.0  # films within this factor share a mesh
-_USUAL, _MORE = 5e-3, 0.3  # edge below which a mesh has more cells, and how many to a decade
-SHORTEST = 1.5  # half-widths from the middle to where the liquid may begin
+_USUAL, _MORE = 5e-3, 0.3  # edge for more cells, relative increase per decade
+SHORTEST = 1.5  # smallest distance of the liquid's start from the middle, in half-widths
 
 
 class MeshLayout(NamedTuple):
@@ -41,20 +41,20 @@ def layout(
     film
         Expected film thickness over the gap g = b^2/(2R).
     decay
-        Length over which the contact pressure decays with the film, over g.
+        Decay length of the contact pressure with the film, over g.
     domain
-        Length of the domain over the default.
+        Length of the domain relative to the default.
     inlet_length
-        Where the liquid begins, in units of b; infinite if it is everywhere.
+        Distance at which the liquid begins, in units of b; infinite if it is everywhere.
     flooded
-        Whether there is liquid behind the contact, too.
+        Whether there is also liquid at the outlet.
 
     Notes
     -----
-    A film h reaches as far as it widens the contact, b sqrt(1 + h/g). The domain goes 60 of these
-    before the middle and 5 behind (60 if flooded), for the thickest film of a class: films of one
-    class, a factor of 100, share a mesh, so that a curve takes few of them. Beyond, `outside_drag`
-    goes on.
+    The reach of a film h is the width of the contact including the film, b sqrt(1 + h/g). The
+    domain extends 60 reaches to the inlet and 5 to the outlet (60 if flooded), for the thickest
+    film of a class: films within a factor of 100 share a mesh, so that a curve needs few meshes.
+    The drag outside the domain is that of `outside_drag`.
     """
     lowest = _CLASS ** np.floor(np.log(max(film, 1e-30)) / np.log(_CLASS))
     reach = np.sqrt(1 + max(lowest * _CLASS, 1.0)) * domain
@@ -71,7 +71,7 @@ def layout(
 
 
 def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
-    """Film thickness [m] between smooth surfaces: the larger of the soft and the rigid limit.
+    """Return the film thickness [m] between smooth surfaces: maximum of soft and rigid limit.
 
     Notes
     -----
@@ -84,18 +84,18 @@ def film_estimate(contact: LineContact, viscosity: float, load: float, speed: fl
 
 
 def thinned_film(contact: LineContact, liquid: Liquid, load: float, speed: float) -> float:
-    """Film thickness [m] by `film_estimate` with the viscosity at the shear rate in that film."""
+    """Return the film thickness [m] by `film_estimate` for the viscosity at its own shear rate."""
     film = film_estimate(contact, liquid.viscosity, load, speed)
     if liquid.thinning is None or not speed:
         return film
-    for _ in range(30):  # h ~ eta^0.6 and eta ~ h^(1 - n): a contraction
+    for _ in range(30):  # h ~ eta^0.6 and eta ~ h^(1 - n): the iteration converges
         thin = float(liquid.thinning.pressure_flow(np.array(speed / film)))
         film = film_estimate(contact, liquid.viscosity * thin, load, speed)
     return film
 
 
 def half_width(contact: Contact, separation: Separation | None, load: float) -> float:
-    """Half-width b [m] of the contact: Hertz, increased by roughness."""
+    """Return the half-width b [m] of the contact: Hertz, increased by roughness."""
     decay = separation.decay_length if separation else 0.0
     return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
 
@@ -115,22 +115,22 @@ def lubrication_problem(
     Parameters
     ----------
     contact, separation, factors
-        Geometry, contact law (none if smooth) and flow.
+        Geometry, contact law (None if smooth) and flow factors.
     load
         F_N/L [N/m].
     film
         `film_estimate` [m] at the speed; 0 at rest.
     cells
-        Cells of the mesh; more where the roughness is thin beside the gap.
+        Cells of the mesh; increased if the roughness is small compared with the gap.
     domain
-        Length of the domain over the default, see `layout`.
+        Length of the domain relative to the default, see `layout`.
     liquid
-        Its extent, outlet and thinning; without it is everywhere, Newtonian and vented.
+        Extent, outlet and thinning of the liquid; default: everywhere, vented and Newtonian.
 
     Raises
     ------
     AnalysisError
-        If the liquid begins too near the contact.
+        If the liquid begins too close to the contact.
     """
     b = half_width(contact, separation, load)
     decay = separation.decay_length if separation else 0.0
@@ -143,9 +143,9 @@ def lubrication_problem(
             f"contact's middle, {SHORTEST * b:.3g} m here; got {inlet_length:.3g} m"
         )
     begins = inlet_length / b
-    cells = _resolving(cells, decay / gap)
+    cells = _cell_count(cells, decay / gap)
     lowest = liquid.lowest_pressure if liquid else 0.0
-    if liquid and liquid.thinning:  # far out it is thick: 60 half-widths, and no drag beyond
+    if liquid and liquid.thinning:  # viscous far away: 60 half-widths, no drag beyond
         domain /= np.sqrt(2)
     spans = layout(film / gap, decay / gap, domain, begins, lowest < 0)
     mesh = graded_mesh(cells, *spans, contact.layer(b))
@@ -158,18 +158,18 @@ def lubrication_problem(
 
 
 def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
-    """Couette and pressure part of the drag outside the solved domain, in units of g p.
+    """Return Couette and pressure parts of the drag outside the solved domain, in units of g p.
 
     Notes
     -----
-    There, and behind if it is flooded, u = k + x^2, k being constant to the logarithm of the
-    bodies' bending, and the pressure falls to 0 far away. With I_n = int_X^inf dx/u^n the inlet
-    adds eta v I_1 by shear and eta v (3 I_1 - 3 u* I_2) by the gradient
-    dp/dx = 6 eta v (u - u*)/u^3, u* = 2 J/v. In the cavity behind, where roughness is thin
-    beside the gap, liquid covers u*/u of the flat: eta v u* I_2.
-    The load that the inlet's tail carries, 4 eta v R^2/X^2, is left out: in the default domain it
-    is under 2e-4 of the whole. A liquid that thins has no such end: it gets the thicker the farther
-    out, and counts inside the domain alone.
+    In front of the domain, and behind it if flooded, u = k + x^2, with k constant except for the
+    logarithm of the elastic displacement, and the pressure falls to 0 far away. With I_n =
+    int_X^inf dx/u^n the inlet contributes eta v I_1 by shear and eta v (3 I_1 - 3 u* I_2) by the
+    gradient dp/dx = 6 eta v (u - u*)/u^3, u* = 2 J/v. In the outlet cavity, where roughness is
+    small compared with the gap, liquid covers u*/u of the flat: eta v u* I_2. The load carried by
+    the inlet's tail, 4 eta v R^2/X^2, is neglected: in the default domain it is below 2e-4 of the
+    total. For a shear-thinning liquid, whose viscosity increases outwards, the drag outside is
+    neglected.
     """
     mesh, film, fields = problem.mesh, solution.state.film, solution.fields
     if problem.thinning:
@@ -190,21 +190,21 @@ def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
 
 
 def _tail(power: int, start: float, constant: float) -> float:
-    """int_X^inf dx/(k + x^2)^n: X^(1-2n)/(2n-1) 2F1(n, n - 1/2; n + 1/2; -k/X^2)."""
+    """Return int_X^inf dx/(k + x^2)^n = X^(1-2n)/(2n-1) 2F1(n, n - 1/2; n + 1/2; -k/X^2)."""
     n = power
     series = hyp2f1(n, n - 0.5, n + 0.5, -constant / start**2)
     return float(start ** (1 - 2 * n) / (2 * n - 1) * series)
 
 
-def _resolving(cells: int, decay: float) -> int:
-    """Return the number of cells with the same cells per decade at a narrow contact edge.
+def _cell_count(cells: int, decay: float) -> int:
+    """Return the number of cells with the usual resolution at a narrow contact edge.
 
     Parameters
     ----------
     cells
-        As many as are asked for.
+        Requested number of cells.
     decay
-        Of the contact pressure with the film, over the gap; 0 between smooth surfaces.
+        Decay length of the contact pressure with the film, over the gap; 0 for smooth surfaces.
     """
     if not decay:
         return cells
@@ -213,5 +213,5 @@ def _resolving(cells: int, decay: float) -> int:
 
 
 def _rounded(value: float) -> float:
-    """Round to two digits, so that similar loads share a mesh."""
+    """Return a value rounded to two digits, so that similar loads share a mesh."""
     return float(f"{value:.2g}")

@@ -23,7 +23,7 @@ from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
 
 PERCOLATION = 0.42  # relative contact area at which the last open channel closes
-CUTOFF = 1e-9  # m, gap under which <1/u> leaves out
+CUTOFF = 1e-9  # m, gap below which <1/u> is cut off
 RoughBody = Literal["stationary", "moving"]
 FACTORS = (
     "pressure_flow_factor",
@@ -33,8 +33,8 @@ FACTORS = (
     "pressure_stress_factor",
 )
 
-# Table: u - u_c from _NEAR to _FAR roughnesses above percolation (a distribution of gaps cannot be
-# summed on its grid much beyond), and down to _LOW roughnesses below it.
+# Table: u - u_c from _NEAR to _FAR roughnesses above percolation (far beyond, a distribution of
+# gaps cannot be summed on its grid), and down to _LOW roughnesses below percolation.
 _NEAR, _FAR, _LOW, _POINTS = 1e-5, 8.0, 1e-3, 64
 
 
@@ -59,21 +59,22 @@ class FlowFactors:
     rms_roughness
         h_rms [m]; 0 for a smooth surface.
     percolation_separation
-        Mean separation u_c [m] under which nothing flows; 0 if it always does.
+        Mean separation u_c [m] below which there is no flow; 0 if there is always flow.
     rough_body
         Which of the two bodies is rough; sets the sign of phi_s, and phi_fp.
     model
-        What the factors come from, for the attributes of results.
+        Source of the factors, for the attributes of results.
     flow, friction
         Tables for a rough body at rest, of phi_p and (u + h_rms phi_s)/u; and of phi_f, phi_fs and,
-        where reciprocity does not give it, phi_fp. None if smooth.
+        if not given by reciprocity, phi_fp. None if smooth.
     limits
-        Attributes of `tribolab.core.validity`: whether the slopes suit thin-film flow.
+        Attributes of `tribolab.core.validity`: whether the slopes are small enough for thin-film
+        flow.
     roughness_balance
-        (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster; None follows
+        (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster; None: from
         `rough_body`.
     slide
-        Half of the slide-roll ratio [1], 1 where one body is at rest: what phi_s carries with it.
+        Half of the slide-roll ratio [1], 1 if one body is at rest: factor of phi_s.
     """
 
     rms_roughness: float
@@ -96,15 +97,15 @@ class FlowFactors:
         phi_f, phi_fs, *phi_fp = self.friction(u)[0]
         phi_s = self._sign * self.slide * u / self.rms_roughness * (1 - open_flow)
         drag = phi_fp[0] if phi_fp else open_flow
-        # a rough body that moves has the rest of u dp/dx on it, as it carries its valleys along
+        # on a moving rough body, the pressure gradient drags with the rest of u dp/dx
         return Factors(phi_p, phi_s, phi_f, phi_fs, (1 + self._sign) - self._sign * drag)
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
-        """phi_p and the entrained separation u + h_rms phi_s [m], each with its slope over u."""
+        """Return phi_p and the entrained separation u + h_rms phi_s [m], with slopes over u."""
         if self.flow is None:
             return np.ones_like(u), np.zeros_like(u), u, np.ones_like(u)
         (phi_p, part), (phi_p_slope, part_slope) = self.flow(u)
-        # (u + h phi_s)/u is phi_fp, or 2 - phi_fp if the rough body carries its valleys along
+        # (u + h phi_s)/u is phi_fp, or 2 - phi_fp if the rough body moves with its valleys
         carried = self._sign * self.slide
         share, rate = (1 + carried) - carried * part, -carried * part_slope
         return phi_p, phi_p_slope, u * share, share + u * rate
@@ -131,7 +132,7 @@ class FlowFactors:
         )
 
     def relative_viscosity(self, separation: np.ndarray) -> np.ndarray:
-        """Viscosity of shear over that at rest [1] at separations [m]: 1, as it is Newtonian."""
+        """Return the viscosity relative to that at rest [1] at separations [m]: 1 if Newtonian."""
         return np.ones_like(separation)
 
     @property
@@ -148,27 +149,27 @@ def flow_factors(
     cutoff: str | float = CUTOFF,
     gamma: float = 0.45,
 ) -> FlowFactors:
-    """Flow and friction factors of a rough surface by effective-medium theory.
+    """Return flow and friction factors of a rough surface by effective-medium theory.
 
     Parameters
     ----------
     psd
         Power spectrum with ``psd_2d`` [m4] (wavenumber).
     rough_body
-        ``"stationary"`` if the rough body stands still and the smooth one moves (fluid in the
-        valleys stays behind: phi_s < 0), ``"moving"`` if it is the other way round (phi_s > 0).
-        It sets phi_fp too: friction is the drag on the body that moves.
+        ``"stationary"`` if the rough body is at rest and the smooth one moves (fluid in the valleys
+        is left behind: phi_s < 0), ``"moving"`` in the opposite case (phi_s > 0). It also
+        determines phi_fp: friction is the drag on the moving body.
     percolation
         Relative contact area at which flow stops, in (0, 1).
     cutoff
-        Gap [m] under which <1/u> leaves out.
+        Gap [m] below which <1/u> is cut off.
     gamma
         Elastic-energy reduction factor [1] of the mean separation.
 
     Returns
     -------
     FlowFactors
-        Frozen table of the surface; modulus and load do not enter.
+        Frozen table of the surface, independent of modulus and load.
 
     Raises
     ------
@@ -187,13 +188,12 @@ def flow_factors(
     - phi_fs = 3 u <u (u - u_e)/D> (drag by roughness-born pressure),
     - phi_f = u <1/u>,
 
-    u being the mean. So the reciprocity of Onsager, (u + h_rms phi_s)/u = phi_fp for a rough body
-    at rest, holds by construction. On a rough body that moves the pressure gradient drags with
-    2 - phi_fp instead: together the two bodies carry u dp/dx, so that reciprocity holds there too,
-    (u + h_rms phi_s)/u = 2 - phi_fp. For u -> infinity and a rough body at rest,
-    phi_p = 1 - (9/d - 3)(h/u)^2, phi_fp = 1 - (3/d)(h/u)^2, phi_fs = (3/d)(h/u)^2 and
-    phi_f = 1 + (h/u)^2; d = 2 gives the results of Tripp [3]_. Below percolation
-    phi_p = phi_fp = 0.
+    u being the mean. Onsager's reciprocity, (u + h_rms phi_s)/u = phi_fp for a rough body at rest,
+    is fulfilled by construction. On a moving rough body the factor of the pressure gradient is 2 -
+    phi_fp instead: together the two bodies carry u dp/dx, so that reciprocity is again fulfilled,
+    (u + h_rms phi_s)/u = 2 - phi_fp. For u -> infinity and a rough body at rest, phi_p = 1 - (9/d -
+    3)(h/u)^2, phi_fp = 1 - (3/d)(h/u)^2, phi_fs = (3/d)(h/u)^2 and phi_f = 1 + (h/u)^2; d = 2 gives
+    the results of Tripp [3]_. Below percolation phi_p = phi_fp = 0.
 
     References
     ----------
@@ -234,7 +234,7 @@ def flow_factors(
 def _tabulated(
     q: bytes, spectrum: bytes, percolation: float, cutoff: float, gamma: float
 ) -> FlowFactors:
-    """Tabulate the factors of a spectrum; the last few tables are cached."""
+    """Return the tabulated factors of a spectrum; the last few tables are cached."""
     psd = xr.Dataset(
         {"psd_2d": ("wavenumber", np.frombuffer(spectrum))},
         coords={"wavenumber": np.frombuffer(q)},
@@ -244,7 +244,7 @@ def _tabulated(
     slope = np.sqrt(cumulative(*spectrum_arrays(psd), 3)[-1])
     closing = float(pressure_of.separation(float(np.sqrt(np.pi) * slope * erfinv(percolation))))
     above = closing + height * np.geomspace(_NEAR, _FAR, _POINTS)
-    # under this hundredth part of the cut-off a contact counts as complete
+    # contact is complete below a hundredth of the cut-off
     lowest = max(min(_LOW * height, closing / 3), 2 * COMPLETE * cutoff)
     if lowest > closing / 2:
         raise AnalysisError(
@@ -284,7 +284,7 @@ def _tabulated(
 
 
 def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
-    """Factors of smooth surfaces: phi_p, phi_f, phi_fp are 1, phi_s and phi_fs 0."""
+    """Return the factors of smooth surfaces: phi_p, phi_f, phi_fp are 1, phi_s and phi_fs 0."""
     check_rough_body(rough_body)
     return FlowFactors(0.0, 0.0, rough_body, "smooth")
 
@@ -293,10 +293,10 @@ def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
 class FactorTable:
     """Table of factors: cubics in ln phi over ln(u - origin), with asymptotes at both ends.
 
-    The cubics are monotone ones, or splines where the factors are known to be smooth.
+    The cubics are monotone, or splines if the factors are known to be smooth.
 
-    Beyond the last node phi = limit + A(u)/u^2, A going to its known value as 1/u^2 does; below
-    the first the power law of the first cell goes on.
+    Beyond the last node phi = limit + A(u)/u^2, where A approaches its known value as 1/u^2; below
+    the first node the power law of the first cell is extrapolated.
     """
 
     u: np.ndarray
@@ -308,7 +308,7 @@ class FactorTable:
     _curve: PPoly = field(init=False, repr=False)  # ln phi and its slope (2, factor)
 
     def __post_init__(self) -> None:
-        """Fit the curve once."""
+        """Fit the interpolating curve."""
         cubic = CubicSpline if self.smooth else PchipInterpolator
         curve = cubic(np.log(self.u - self.origin), np.log(self.values), axis=1)
         both = np.zeros((*curve.c.shape[:2], 2, len(self.values)))
@@ -316,7 +316,7 @@ class FactorTable:
         object.__setattr__(self, "_curve", PPoly(both, curve.x))
 
     def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and slopes over u, each (factor, shape of u)."""
+        """Return values and slopes over u, each (factor, shape of u)."""
         distance = np.maximum(u - self.origin, 0)
         first, last = self._curve.x[0], self._curve.x[-1]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -328,7 +328,7 @@ class FactorTable:
             value = np.exp(log_value)
             slope = value * rate / distance
             if np.any(distance == 0):
-                value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # a power's, a level
+                value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # constant if flat
                 slope = np.where(distance > 0, slope, 0.0)
             end = self.u[-1]
             beyond = u > end
@@ -350,12 +350,12 @@ def _averages(
     cutoff: float,
     gamma: float,
 ) -> tuple[np.ndarray, ...]:
-    """Factors phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
+    """Return phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
     pressure = pressure_of.pressure(u)
     flow, plain = gap_distributions(pressure, psd, 1.0, ("flow", "plain"), gamma, cutoff, points=8)
     gap, weight = flow["gap"].values, flow["gap_weight"].values
     touching = flow["contact_area_ratio"].values
-    # the sums' own mean, so that their error of quadrature cancels in phi - 1
+    # the mean of the sum itself is used, so that quadrature errors cancel in phi - 1
     total = weight.sum(axis=1) + touching
     weight, touching = weight / total[:, None], touching / total
     mean = weight @ gap
@@ -363,7 +363,7 @@ def _averages(
     conductance = _effective(gap**3, weight, touching, dimension)
     denominator = gap**3 + (dimension - 1) * conductance[:, None]
     entrained = dimension * conductance * (weight * gap / denominator).sum(axis=1)
-    # below percolation D -> u^3, and gaps under the cut-off are no fluid
+    # below percolation D -> u^3, and gaps below the cut-off contain no fluid
     fluid = np.where(gap >= cutoff, weight, 0.0)
     moved = gap * (gap - entrained[:, None]) / denominator
     correction = 3 * mean * (fluid * moved).sum(axis=1)
@@ -376,7 +376,7 @@ def _averages(
 def _effective(
     local: np.ndarray, weight: np.ndarray, touching: np.ndarray, dimension: float
 ) -> np.ndarray:
-    """Effective conductivity: solve 1 = <d s_e/D> for s_e by bisection; 0 if contact percolates."""
+    """Return the effective conductivity: 1 = <d s_e/D> solved for s_e; 0 if contact percolates."""
 
     def excess(log_s: np.ndarray) -> np.ndarray:
         s = np.exp(log_s)[:, None]

@@ -47,7 +47,7 @@ def film_profile(
     solver: Solver | None = None,
     **options: Any,
 ) -> xr.Dataset:
-    """Separation and pressures across the contact at one or several speeds.
+    """Return separation and pressures across the contact at one or several speeds.
 
     Parameters
     ----------
@@ -57,14 +57,13 @@ def film_profile(
     Returns
     -------
     xarray.Dataset
-        Over ``x`` [m], of a ball along its middle, the flat sliding to +x (at a negative speed to
-        -x); of several speeds over (sliding_speed, point), with ``x`` as a variable:
-        ``separation`` [m],
-        ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and their sum
-        ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``, the
-        ``flux`` [m2/s] of a line and ``cavity_start`` [m], and the proof of the point:
-        ``residual``, ``load_balance``, ``flux_variation``, ``iterations``. Grid and system are
-        attributes.
+        Over ``x`` [m] (for a ball on the centre line), the flat sliding to +x (for a negative speed
+        to -x); for several speeds over (sliding_speed, point), with ``x`` as a variable:
+        ``separation`` [m], ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and
+        their sum ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and
+        ``load``, the ``flux`` [m2/s] of a line contact and ``cavity_start`` [m], and the
+        convergence data ``residual``, ``load_balance``, ``flux_variation``, ``iterations``.
+        Attributes: grid and system.
 
     Examples
     --------
@@ -74,7 +73,7 @@ def film_profile(
     >>> f"{1e6 * film.separation.min():.2f} um, {1e-3 * film.pressure.max():.1f} kPa"
     '5.89 um, 52.3 kPa'
     """
-    if isinstance(interface, str):  # in the last release here stood which body is rough
+    if isinstance(interface, str):  # in the last release this argument was `rough_body`
         options, interface = {"rough_body": interface, **options}, None
     warn_of_old("film_profile", options)
     parameters = parameters_of(liquid, interface or 0.0, solver, **options)
@@ -89,15 +88,15 @@ def film_profile(
     films = [
         _profile(system, force, float(v), points[i]) for v, i in zip(speeds, back, strict=True)
     ]
-    return _put_together(films) if np.ndim(speed) else films[0]
+    return _combine(films) if np.ndim(speed) else films[0]
 
 
 def _profile(
     system: System, force: float, v: float, point: SolvedSpeed | SolvedPoint
 ) -> xr.Dataset:
-    """Profile of the solution at one speed."""
+    """Return the profile of the solution at one speed."""
     side = -1 if v < 0 else 1
-    x, film, solid, fluid, cavity = _along(point)
+    x, film, solid, fluid, cavity = _centre_line(point)
     whole = solid + fluid
     values = {
         "separation": film,
@@ -107,7 +106,7 @@ def _profile(
         "contact_area_ratio": real_area(system, solid, whole, system.solver.area),
     }
     x = side * x
-    # variables, since several speeds that are put together lose attributes that differ
+    # as variables: combining several speeds drops attributes that differ
     scalars = {
         "cavity_start": float(x[min(cavity, x.size - 1)]),
         **{name: getattr(point.solution, name) for name in PROOF},
@@ -125,10 +124,10 @@ def _profile(
     return stamp(data, **system_attributes(system), **limits)
 
 
-def _along(
+def _centre_line(
     point: SolvedSpeed | SolvedPoint,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
-    """X [m], film [m], both pressures [Pa] and the start of the cavity, on the centre line."""
+    """Return x [m], film [m], both pressures [Pa] and start of the cavity, on the centre line."""
     parts: tuple[np.ndarray, ...]
     if isinstance(point, SolvedSpeed):
         line, fields = point.problem, point.solution.fields
@@ -149,14 +148,14 @@ def _along(
 
 
 def _flux(system: System, point: SolvedSpeed) -> float:
-    """Flux [m2/s] of a line contact."""
+    """Return the flux [m2/s] of a line contact."""
     problem = point.problem
     unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
     return float(point.solution.fields.flux[0] * unit)
 
 
-def _put_together(films: list[xr.Dataset]) -> xr.Dataset:
-    """Profiles at several speeds over (sliding_speed, point), each on its own grid."""
+def _combine(films: list[xr.Dataset]) -> xr.Dataset:
+    """Return the profiles at several speeds over (sliding_speed, point), each on its own grid."""
     rows = [f.reset_index("x").reset_coords("x").rename_dims(x="point") for f in films]
     joined = xr.concat(
         rows, "sliding_speed", data_vars="all", coords="different", compat="equals", join="outer",

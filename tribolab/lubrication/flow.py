@@ -10,28 +10,28 @@ from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.parabolas import Between
 from tribolab.lubrication.thinning import ThinnedFactors
 
-# Share of the smooth conductance u^3 that is left beyond percolation, so that fluid locked between
-# closed channels has a pressure; the flow it lets through is nothing beside any other.
+# Share of the smooth conductance u^3 that remains below percolation, so that fluid enclosed by
+# closed channels has a pressure; its flow is negligible.
 _LEAK = 1e-10
-# Films in roughnesses: below the first a straight line lies between two of them, as flow changes
-# by decades where channels close, and from the second on a cubic through four.
+# Film thickness in roughnesses: below the first value the film between cells is linear, because
+# flow changes by decades where channels close; above the second it is cubic through four cells.
 _STRAIGHT, _CURVED = 0.3, 0.6
 
 
 class Flow(NamedTuple):
-    """Flow resistance and entrainment at the points of `Between`, and summed between centres.
+    """Flow resistance and entrainment at the points of `Between`, and integrated between centres.
 
-    Lengths along x in b, gaps in g, pressures in p; a flux is in units of g^3 p/(12 eta b).
-    The gradient of the fluid's pressure is ``resistance * (entrained - flux)`` at every point, so
-    that of a flux J the pressure rises by ``(drive - J) / conductance`` from middle to middle.
+    Lengths along x in b, gaps in g, pressures in p; a flux is in units of g^3 p/(12 eta b). The
+    gradient of the fluid pressure is ``resistance * (entrained - flux)`` at every point: for a flux
+    J the pressure rises by ``(drive - J) / conductance`` from centre to centre.
     """
 
     film: np.ndarray  # at the points (2, n + 1)
-    share: np.ndarray  # of the four cells around in it (2, 4, n + 1)
-    resistance: np.ndarray  # 1/(u^3 phi_p) there (2, n + 1)
-    entrained: np.ndarray  # there (2, n + 1)
-    conductance: np.ndarray  # from middle to middle (n + 1)
-    drive: np.ndarray  # what is entrained, its mean weighted by the resistance (n + 1)
+    share: np.ndarray  # weights of the four surrounding cells in the film (2, 4, n + 1)
+    resistance: np.ndarray  # 1/(u^3 phi_p) at the points (2, n + 1)
+    entrained: np.ndarray  # entrained flux at the points (2, n + 1)
+    conductance: np.ndarray  # from centre to centre (n + 1)
+    drive: np.ndarray  # mean entrained flux, weighted by the resistance (n + 1)
     resistance_slope: np.ndarray  # over the film (2, n + 1)
     entrained_slope: np.ndarray  # (2, n + 1)
 
@@ -43,12 +43,12 @@ def flow_between(
     couette: float,
     film: np.ndarray,
 ) -> Flow:
-    """Integrate resistance and entrainment between the centres of cells with these films (n).
+    """Return resistance and entrainment integrated between the centres of cells.
 
     Notes
     -----
-    Integrating dp/dx from middle to middle by two Gauss points is exact to the fourth order of a
-    cell's width; the mean of the two films in place of the film in between is so to the second.
+    Integrating dp/dx from centre to centre with two Gauss points is of fourth order in the cell
+    width; with the mean of the two films instead it would be of second order.
     """
     u, share = _film_between(between, film, factors.rms_roughness / gap)
     phi, phi_slope, entrained, entrained_slope = factors.transport(u * gap)
@@ -80,7 +80,7 @@ def flux_slopes(between: Between, flow: Flow, flux: np.ndarray) -> np.ndarray:
 def _film_between(
     between: Between, film: np.ndarray, roughness: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Film at the points, and its derivative with respect to the four cells around."""
+    """Return the film at the points, and its derivatives by the films of the four cells around."""
     around = film[between.cell]
     u, share = (between.share * around).sum(axis=1), between.share
     thinner = np.minimum(around[1], around[2])
@@ -91,7 +91,7 @@ def _film_between(
     line = between.straight[:, 1] * around[1] + between.straight[:, 2] * around[2]
     bent = u - line
     share = between.straight + part * (share - between.straight)
-    moving = np.where((part > 0) & (part < 1), bent / span, 0.0)  # part hangs on the thinner
+    moving = np.where((part > 0) & (part < 1), bent / span, 0.0)  # part depends on the thinner film
     first = around[1] < around[2]
     share[:, 1] += np.where(first, moving, 0.0)
     share[:, 2] += np.where(first, 0.0, moving)

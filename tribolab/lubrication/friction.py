@@ -23,8 +23,8 @@ def friction_parts(system: System, rough: FluidFriction, plain: FluidFriction) -
 
     Notes
     -----
-    Where both bodies move, half the difference of both signs of the slide-roll ratio is the shear;
-    the pressure's drag is rolling friction.
+    If both bodies move, shear friction is half the difference between both signs of the slide-roll
+    ratio; the drag of the pressure is rolling friction.
     """
     couette, pressure = rough if system.solver.friction_factors else plain
     slide, rolls = abs(system.factors.slide), system.rolls
@@ -36,15 +36,14 @@ def friction_parts(system: System, rough: FluidFriction, plain: FluidFriction) -
 
 
 def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction, FluidFriction]:
-    """Fluid friction with the friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
+    """Return the fluid friction with friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
 
     Notes
     -----
-    The gradient is the fluid's, and counts with the sign that it has in the drag on the flat that
-    slides to +x. In the cavity there is none, and the fluid covers the part of the flat on which
-    what it entrains is the flux, J = share (v/2)(u + h_rms phi_s): all of it where the film
-    ruptures, u*/u far behind. What the liquid outside the domain adds is known in closed form
-    (`outside_drag`).
+    The gradient of the fluid pressure has the sign of the drag on the flat that slides to +x. In
+    the cavity it is zero, and the fluid covers the share of the flat for which entrainment equals
+    the flux, J = share (v/2)(u + h_rms phi_s): 1 at the rupture of the film, u*/u far behind. The
+    drag of the liquid outside the domain is added in closed form (`outside_drag`).
     """
     u, fields, mesh = solution.state.film, solution.fields, problem.mesh
     if solution.couette == 0:
@@ -53,13 +52,13 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
     moving = problem.moving(solution.couette)
     factors = moving.at(np.concatenate([u, *flow.film]) * problem.gap)
     shear = mesh.weight / u
-    # a cavity holds no more than what flows out of the full film
+    # the flux in a cavity is that of the full film
     cavity, flux = slice(fields.front, fields.rear), fields.flux[fields.front] / solution.couette
     carried = u[cavity] + problem.factors.rms_roughness / problem.gap * factors.phi_s[cavity]
     shear[cavity] *= np.where(carried > flux, flux / np.maximum(carried, flux), 1.0)
-    # the pressure's drag from the end of the domain, where it is 0, to where the film ruptures
+    # drag of the pressure from the end of the domain, where it is 0, to the rupture of the film
     rise = mesh.between.weight * flow.resistance * (flow.entrained - fields.flux[0])
-    if fields.front < fields.rear < u.size:  # the liquid forms again somewhere before a middle
+    if fields.front < fields.rear < u.size:  # the liquid forms again between two centres
         whole = rise[:, fields.rear].sum()
         rise[:, fields.rear] *= (fields.fluid[fields.rear] - problem.cavity) / whole
         rise[:, fields.front + 1 : fields.rear] = 0.0

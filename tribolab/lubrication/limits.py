@@ -1,4 +1,4 @@
-"""Numbers that decide what is reported of a lubricated contact."""
+"""Limits for the validity of lubricated contacts."""
 
 from tribolab.core.limit import Limit
 

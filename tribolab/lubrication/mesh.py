@@ -1,4 +1,4 @@
-"""Cells across the contact, refined where film and pressure change fast, with elasticity."""
+"""Cells across the contact, refined at steep film and pressure, with elasticity."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from scipy.linalg import inv
 from tribolab.contact.layer import Layer, line_layer_kernel
 from tribolab.lubrication.parabolas import Between, between_middles, curved_kernel, curved_weights
 
-# Cells about each end of the contact: the film is made at the inlet, and is thinnest in the narrow
+# Cells at each end of the contact: the film forms at the inlet, and is thinnest in the narrow
 # constriction at the outlet.
-_ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # place, weight and width over that asked for
+_ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # position, weight, and width relative to the edge
 
 
 class Mesh(NamedTuple):
     """Cells in units of the contact half-width b; sliding to +x, inlet at x < 0."""
 
-    x: np.ndarray  # middles (n)
+    x: np.ndarray  # centres (n)
     width: np.ndarray  # (n)
-    weight: np.ndarray  # of a value at the middles in an integral over all cells (n)
-    between: Between  # where the flow from middle to middle is summed
-    kernel: np.ndarray  # film that bends away by unit pressure at a middle, for E* = 1 (n, n)
-    elastic: np.ndarray  # its inverse K beside -K 1 (n, n + 1)
-    push: np.ndarray  # load by each of its columns, weight @ elastic (n + 1)
+    weight: np.ndarray  # weights of values at the centres in an integral over all cells (n)
+    between: Between  # points for the flow from centre to centre
+    kernel: np.ndarray  # displacement by unit pressure at a centre, for E* = 1 (n, n)
+    elastic: np.ndarray  # its inverse K next to -K 1 (n, n + 1)
+    push: np.ndarray  # load of each of its columns, weight @ elastic (n + 1)
 
 
 @functools.lru_cache(maxsize=16)
@@ -38,28 +38,28 @@ def graded_mesh(
     size: float = 1.0,
     layer: Layer | None = None,
 ) -> Mesh:
-    """Graded mesh with the highest density of cells at x = -size and x = size.
+    """Return a graded mesh with the highest density of cells at x = -size and x = size.
 
     Parameters
     ----------
     cells
-        Their number.
+        Number of cells.
     edge
-        Length over which the film leaves the contact's edge, in units of size b: cells are finest
-        there, at 160 of them a sixth to a third of it at the outlet and twice that at the inlet.
+        Length over which the film rises at the contact's edge, in units of size b. Cells are finest
+        there: with 160 cells, a sixth to a third of it at the outlet and twice that at the inlet.
     inlet, outlet
         Ends of the domain: -inlet, outlet, in units of b.
     size
-        Half-width of what is to be resolved, in units of b: more than 1 where the film is thick.
+        Half-width of the resolved region, in units of b: more than 1 for a thick film.
     layer
         An elastic layer on a rigid base, its thickness in units of b.
 
     Notes
     -----
-    The inverse is kept for the last few meshes: it depends on nothing but the cells, as lengths
-    are in units of b and the kernel's own scale goes into the constant of Eq. (9).
+    The inverse is cached for the last few meshes: it depends only on the cells, because lengths are
+    in units of b and the length scale of the kernel is included in the constant of Eq. (9).
     """
-    # dense samples of the density where it is peaked: equal steps of asinh((x -+ 1)/edge)
+    # dense samples of the peaked density: equal steps of asinh((x -+ 1)/edge)
     inlet, outlet = inlet / size, outlet / size
     reach = np.arcsinh((max(inlet, outlet) + 1) / edge)
     near = edge * np.sinh(np.linspace(-reach, reach, 4001))
@@ -67,7 +67,7 @@ def graded_mesh(
     at = at[(at >= -inlet) & (at <= outlet)]
     density = 5 / (1 + at**4) + sum(w / np.hypot(at - end, r * edge) for end, w, r in _ENDS)
     count = np.append(0, np.cumsum(np.diff(at) * (density[1:] + density[:-1]) / 2))
-    count, kept = np.unique(count, return_index=True)  # samples may lie within rounding
+    count, kept = np.unique(count, return_index=True)  # samples may coincide within rounding
     at = at[kept]
     faces = PchipInterpolator(count, at)(np.linspace(0, count[-1], cells + 1))
     faces[[0, -1]] = -inlet, outlet

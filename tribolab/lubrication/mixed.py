@@ -15,15 +15,15 @@ from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 _STEPS = 30
 _CAP = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-9  # of the maximum pressure, and of the load
-_NEAR = 1e-5  # the same, from where the last step's matrix serves for the next
-_ROUNDING = 1e-8  # the same, where a further step no longer gains
+_NEAR = 1e-5  # residual below which the matrix of the last step is reused
+_ROUNDING = 1e-8  # residual accepted if a further step no longer improves it
 
 
 class Repulsion(Protocol):
-    """Interface of contact pressure against separation: a rough contact or a substitute."""
+    """Contact pressure as a function of separation: a rough contact or a substitute."""
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pressure [Pa] and its slope [Pa/m] at separations [m]."""
+        """Return pressure [Pa] and its slope [Pa/m] at separations [m]."""
 
 
 class Problem(NamedTuple):
@@ -31,18 +31,18 @@ class Problem(NamedTuple):
 
     mesh: Mesh
     factors: FlowFactors
-    separation: Repulsion | None  # none between smooth surfaces: they never touch
+    separation: Repulsion | None  # None for smooth surfaces: they never touch
     load: float  # F_N/L in units of p b
     half_width: float  # b [m]
     gap: float  # g = b^2/(2R) [m]
     pressure: float  # p = E* g/b [Pa]
-    inlet_length: float = np.inf  # where the liquid begins, before the middle
-    cavity: float = 0.0  # lowest pressure of the liquid; below 0 the outlet is flooded
+    inlet_length: float = np.inf  # distance at which the liquid begins, before the middle
+    cavity: float = 0.0  # lowest pressure of the liquid; negative if the outlet is flooded
     thinning: ShearThinning | None = None
-    viscosity: float = 1.0  # at rest [Pa s], of a liquid that thins
+    viscosity: float = 1.0  # at rest [Pa s], of a shear-thinning liquid
 
     def moving(self, couette: float) -> FlowFactors | ThinnedFactors:
-        """Return the factors at a speed, those of a thinning liquid included."""
+        """Return the factors at a speed, including those of a shear-thinning liquid."""
         if self.thinning is None:
             return self.factors
         speed = couette * self.gap**2 * self.pressure / (6 * self.viscosity * self.half_width)
@@ -52,8 +52,8 @@ class Problem(NamedTuple):
 class State(NamedTuple):
     """Film, constant of Eq. (9) and pressure p = K^-1 (u - c - x^2), in the problem's units.
 
-    The pressure is carried along with the changes of the film: computed anew from a film much
-    thicker than what pressure bends, it would be the difference of large numbers.
+    The pressure is updated with the changes of the film: computed from a film much thicker than the
+    elastic displacement, it would be a difference of large numbers.
     """
 
     film: np.ndarray
@@ -61,7 +61,7 @@ class State(NamedTuple):
     pressure: np.ndarray
 
     def moved(self, mesh: Mesh, film: np.ndarray, constant: float) -> State:
-        """Return the state changed by these amounts of film and constant."""
+        """Return the state changed by given amounts of film and constant."""
         bent = mesh.elastic @ np.append(film, constant)
         return State(self.film + film, self.constant + constant, self.pressure + bent)
 
@@ -73,7 +73,7 @@ class Fields(NamedTuple):
     fluid: np.ndarray  # (n)
     flux: np.ndarray  # through the faces (n + 1)
     front: int  # first cell of the cavity
-    rear: int  # first cell behind it
+    rear: int  # first cell after it
 
 
 class Solution(NamedTuple):
@@ -98,22 +98,22 @@ class _Film(NamedTuple):
 
     fields: Fields
     flow: Flow
-    total: np.ndarray  # pressure by elasticity (n)
+    total: np.ndarray  # from elasticity (n)
     yielding: np.ndarray  # slope of the contact pressure over the film (n)
-    flux_slope: np.ndarray  # over the films of the four cells around (4, n + 1)
-    scale: np.ndarray  # turns a cell's balance into pressure (n)
+    flux_slope: np.ndarray  # over the films of the four surrounding cells (4, n + 1)
+    scale: np.ndarray  # converts a cell's balance to pressure (n)
     residual: np.ndarray  # (n)
     error: float
     lacking: float  # relative error of the load
 
 
 def couette_number(problem: Problem, viscosity: float, speed: float) -> float:
-    """Ratio of Couette to Poiseuille flux, 6 eta v b/(g^2 p), the only effect of speed."""
+    """Return the ratio of Couette to Poiseuille flux, 6 eta v b/(g^2 p): the effect of speed."""
     return 6 * viscosity * speed * problem.half_width / (problem.gap**2 * problem.pressure)
 
 
 def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
-    """Solve Eqs. (3), (5), (9), (10) with cavitation at one speed by Newton's method.
+    """Return the solution of Eqs. (3), (5), (9), (10) with cavitation at one speed, by Newton.
 
     Parameters
     ----------
@@ -131,12 +131,12 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
 
     Notes
     -----
-    Unknowns are the film u in the cells and the constant of Eq. (9); the pressure is
-    ``p = K^-1 (u - c - x^2)``, the fluid's part p - p_cont(u). A cell's equation is div J = 0 up
-    to where the film ruptures and p_fluid = 0 behind, which is the solution of ``p_fluid >= 0``,
-    ``div J >= 0``, ``p_fluid div J = 0`` where the film grows towards the outlet. Where it
-    ruptures follows exactly from each film (`_rupture`), so that the front moves as far as it
-    must in one step; letting each cell change sides by itself takes a step per cell.
+    Unknowns are the film u in the cells and the constant of Eq. (9); the pressure is ``p = K^-1 (u
+    - c - x^2)``, the fluid's part p - p_cont(u). A cell's equation is div J = 0 up to the rupture
+    of the film and p_fluid = 0 behind it, the solution of ``p_fluid >= 0``, ``div J >= 0``,
+    ``p_fluid div J = 0`` if the film grows towards the outlet. The position of rupture follows
+    exactly from each film (`_rupture`), so that the front moves over any distance in one step, not
+    by one cell per step.
     """
     state, before, solver = start, np.inf, None
     for step in range(_STEPS + 1):
@@ -149,8 +149,8 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
         if solver is None or error > min(_NEAR, before / 10):
             solver = _factored(problem, film)
         before = error
-        # the transpose is what LAPACK reads without a copy
-        change, _ = lapack.dgetrs(*solver, _lacking(problem, film), trans=1, overwrite_b=True)
+        # LAPACK reads the transpose without a copy
+        change, _ = lapack.dgetrs(*solver, _deficit(problem, film), trans=1, overwrite_b=True)
         if not np.all(np.isfinite(change)):
             raise NotConvergedError("the linearised equations are singular")
         largest = np.max(np.abs(change[:-1]) / state.film)
@@ -164,7 +164,7 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     contact, yielding = _contact(problem, u)
     total = state.pressure
     fluid = total - contact
-    # flux J = drive - T (rise of p) from middle to middle; outside the domain p = 0
+    # flux J = drive - T (rise of p) from centre to centre; outside the domain p = 0
     flow = flow_between(mesh.between, problem.moving(couette), problem.gap, couette, u)
     conductance, entrained = flow.conductance, flow.drive
     rise = np.empty_like(conductance)
@@ -179,12 +179,12 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     lowest = problem.cavity if couette > 0 else 0.0
     residual = scale * (flux[1:] - flux[:-1])
     residual[front:rear] = fluid[front:rear] - lowest
-    # the fluid's pressure once more, by the flux alone: exact to rounding also where it is small
+    # the fluid pressure again, from the flux: exact to rounding also at small pressure
     exact = np.full_like(u, lowest)
     exact[:front] = np.cumsum((entrained[:front] - through) / conductance[:front])
     passing = np.full_like(entrained, through)
     passing[front + 1 : rear + 1] = entrained[front + 1 : rear + 1]
-    if rear < u.size:  # liquid again: what flowed out before the cavity
+    if rear < u.size:  # liquid forms again: the flux before the cavity
         behind = (entrained[rear + 1 :] - through) / conductance[rear + 1 :]
         exact[rear:] = -np.cumsum(behind[::-1])[::-1]
         if front < rear:
@@ -204,15 +204,15 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
 
 
 def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
-    """LU factors of the transposed Jacobian, and their pivots."""
+    """Return the LU factors of the transposed Jacobian, and their pivots."""
     factor, pivots, singular = lapack.dgetrf(_jacobian(problem, film).T, overwrite_a=True)
     if singular:
         raise NotConvergedError("the linearised equations are singular")
     return factor, pivots
 
 
-def _lacking(problem: Problem, film: _Film) -> np.ndarray:
-    """Negative residual, and negative deficit of the load."""
+def _deficit(problem: Problem, film: _Film) -> np.ndarray:
+    """Return the negative residual, and the negative deficit of the load."""
     lack = problem.mesh.weight @ film.total - problem.load
     return -np.append(film.residual, film.total.max() / problem.load * lack)
 
@@ -227,7 +227,7 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
     elastic = mesh.elastic
     matrix = np.empty((n + 1, n + 1))
     matrix[:n] = elastic
-    for start, stop in ((0, front), (rear, n)):  # cells of the full film but for the ends
+    for start, stop in ((0, front), (rear, n)):  # cells of the full film except the ends
         first, last = max(start, 1), min(stop, n - 1)
         if first < stop:
             matrix[first:stop] += before[first:stop, None] * elastic[first - 1 : stop - 1]
@@ -266,11 +266,11 @@ def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
 def _rupture(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """First cell of the cavity, first cell after it, and the flux up to it, for a given film.
+    """Return first cell of the cavity, first cell after it, and flux up to it, for a given film.
 
-    Full cells 0 ... k - 1 and p = 0 at both ends make the flux J_k the mean of what is entrained,
-    weighted with the resistance of the faces 0 ... k. The film ruptures at the first k from which
-    on what is entrained is more than that: there div J >= 0, and p >= 0 before it.
+    With full cells 0 ... k - 1 and p = 0 at both ends, the flux J_k is the mean entrained flux,
+    weighted with the resistance of the faces 0 ... k. The film ruptures at the first k beyond which
+    entrainment always exceeds J_k: there div J >= 0, and p >= 0 before it.
     """
     resistance = 1 / conductance
     flux = np.cumsum(entrained * resistance) / np.cumsum(resistance)
@@ -282,11 +282,11 @@ def _rupture(
 def _cavity(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """Return the cavity if the liquid sustains tension, with the region after it.
+    """Return the cavity if the liquid sustains tension, with the region after the cavity.
 
-    Without a cavity the flux is the mean over all faces. Where the pressure would fall below the
-    lowest, the film ruptures as in `_rupture`, but at that pressure; it forms again in the first
-    cell from which on the same flux makes no lower pressure.
+    Without a cavity the flux is the mean over all faces. If the pressure would fall below the
+    lowest, the film ruptures as in `_rupture`, but at that pressure. It forms again in the first
+    cell beyond which the pressure at the same flux stays above.
     """
     n, resistance = entrained.size - 1, 1 / conductance
     driven, resisted = np.cumsum(entrained * resistance), np.cumsum(resistance)
@@ -305,7 +305,7 @@ def _cavity(
 
 
 def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Contact pressure and its derivative with respect to the film."""
+    """Return the contact pressure and its derivative with respect to the film."""
     if problem.separation is None:
         return np.zeros_like(film), np.zeros_like(film)
     pressure, slope = problem.separation.pressure_and_slope(film * problem.gap)
@@ -313,14 +313,14 @@ def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _proof(problem: Problem, couette: float, state: State, film: _Film, step: int) -> Solution:
-    """Check the solution; tension in the fluid or a reforming film is no solution."""
+    """Return the solution after checks; tension in the fluid or a reforming film is rejected."""
     fields = film.fields
     carried = fields.contact + fields.fluid
     highest = carried.max()
     if np.any(fields.fluid < problem.cavity - _ROUNDING * highest):
         raise NotConvergedError("the film ruptures in more than one place")
     drive = fields.flux[1:] - fields.flux[:-1]
-    last = fields.rear - (fields.rear < drive.size)  # where liquid forms again the flux falls
+    last = fields.rear - (fields.rear < drive.size)  # the flux falls where liquid forms again
     if couette > 0 and np.any(drive[fields.front : last] < -_ROUNDING * fields.flux.max()):
         raise NotConvergedError("the film forms again behind the cavity")
     return Solution(
@@ -336,7 +336,7 @@ def _proof(problem: Problem, couette: float, state: State, film: _Film, step: in
 
 
 def _flux_variation(fields: Fields, flow: Flow) -> float:
-    """Variation of the flux over the full film, recomputed from film and pressure."""
+    """Return the variation of the flux over the full film, recomputed from film and pressure."""
     if fields.front < 2:
         return 0.0
     flux = (flow.drive[1:-1] - flow.conductance[1:-1] * np.diff(fields.fluid))[: fields.front]

@@ -8,28 +8,28 @@ import numpy as np
 
 from tribolab.contact.line import line_kernel
 
-_FAR = 6.0  # widths from a cell, from where on its moments are a series
-_GAUSS = 0.5 / np.sqrt(3)  # of the interval, from its middle
-_FINE = 129  # points where the lowest film is looked for: 1e-4 of a cell's change lies between
+_FAR = 6.0  # distance in cell widths beyond which moments are computed by a series
+_GAUSS = 0.5 / np.sqrt(3)  # of the interval, from its centre
+_FINE = 129  # points for the minimum film: resolves 1e-4 of a cell's change
 
 
 class Between(NamedTuple):
     """Two Gauss points between neighbouring centres; half cells at both ends.
 
-    The film there is that of the cubic through the four middles around, of the parabola through
-    three beside the outermost cells, and in their outer halves that of their middles.
+    The film at the points is a cubic through the four surrounding centres, a parabola through three
+    next to the outermost cells, and constant in the outer halves of the outermost cells.
     """
 
     weight: np.ndarray  # half the length, the same for both points (n + 1)
-    share: np.ndarray  # of the four cells around (2, 4, n + 1)
-    straight: np.ndarray  # the same of a straight line between the two beside (2, 4, n + 1)
-    cell: np.ndarray  # which those are (4, n + 1)
+    share: np.ndarray  # weights of the four surrounding cells (2, 4, n + 1)
+    straight: np.ndarray  # the same for linear interpolation (2, 4, n + 1)
+    cell: np.ndarray  # indices of these cells (4, n + 1)
 
 
 def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
-    """Points of `Between` for cells with these centres and widths (n)."""
+    """Return the points of `Between` for cells with given centres and widths (n)."""
     n = x.size
-    # four cells around each face; at the ends, where there is none, one counts for nothing
+    # four cells around each face; missing cells at the ends have weight 0
     cell = np.arange(-2, 2)[:, None] + np.arange(n + 1)
     exists = (cell >= 0) & (cell < n)
     cell = cell.clip(0, n - 1)
@@ -48,15 +48,16 @@ def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
     straight = np.zeros_like(share)
     straight[:, 1] = 0.5 + np.array([[_GAUSS], [-_GAUSS]])
     straight[:, 2] = 1 - straight[:, 1]
-    for face, mine in ((0, 2), (n, 1)):  # the outermost cells are level in their outer halves
+    for face, mine in ((0, 2), (n, 1)):  # constant in the outer halves of the outermost cells
         share[:, :, face] = straight[:, :, face] = np.arange(4) == mine
     return Between(length / 2, share, straight, cell)
 
 
 def curved_weights(x: np.ndarray, width: np.ndarray) -> np.ndarray:
-    """Weights (n) that integrate values at the centres over all cells.
+    """Return weights (n) that integrate values at the centres over all cells.
 
-    In a cell it is the parabola through its middle and those beside it; level in the outermost.
+    A cell has the parabola through its centre and the neighbouring ones; the outermost are
+    constant.
     """
     weight = width.copy()
     for shift, _, curve in _parabolas(x):
@@ -66,10 +67,10 @@ def curved_weights(x: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def curved_kernel(x: np.ndarray, width: np.ndarray) -> np.ndarray:
-    """Displacement at x_i from unit pressure at x_j (n, n), for E* = 1.
+    """Return the displacement at x_i by unit pressure at x_j (n, n), for E* = 1.
 
-    As `line_kernel`, but the pressure of a cell is the parabola through its middle and those
-    beside it, level in the outermost cells.
+    As `line_kernel`, but the pressure of a cell is the parabola through its centre and the
+    neighbouring ones, constant in the outermost cells.
     """
     kernel = line_kernel(x, width, 1.0)
     first, second = _moments(x, width)
@@ -80,7 +81,7 @@ def curved_kernel(x: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def _parabolas(x: np.ndarray) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """Slope and curvature at inner centres (n - 2) from three neighbouring cells."""
+    """Return weights of slope and curvature at inner centres (n - 2) for three cells."""
     before, after = x[1:-1] - x[:-2], x[2:] - x[1:-1]
     both = before + after
     return [
@@ -91,10 +92,10 @@ def _parabolas(x: np.ndarray) -> list[tuple[int, np.ndarray, np.ndarray]]:
 
 
 def _moments(x: np.ndarray, width: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """-(2/pi) int (x' - x_j)^k ln(|x_i - x'|/l) dx' over cell j (n, n), for k = 1 and 2.
+    """Return -(2/pi) int (x' - x_j)^k ln(|x_i - x'|/l) dx' over cell j (n, n), for k = 1 and 2.
 
-    l is that of `line_kernel`. Far from a cell the closed form is a difference of large numbers:
-    there the logarithm is a series.
+    l is that of `line_kernel`. Far from a cell, where the closed form is a difference of large
+    numbers, a series is used.
     """
     scale = x[-1] - x[0] + width.mean()
     apart = x - x[:, None]
@@ -113,13 +114,13 @@ def _moments(x: np.ndarray, width: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _antiderivatives(t: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Antiderivatives of t^k ln(|t|/l) for k = 0, 1, 2."""
+    """Return the antiderivatives of t^k ln(|t|/l) for k = 0, 1, 2."""
     log = np.log(np.where(t == 0, 1.0, np.abs(t)) / scale)
     return t * (log - 1), t**2 / 2 * (log - 1 / 2), t**3 / 3 * (log - 1 / 3)
 
 
 def lowest(x: np.ndarray, values: np.ndarray) -> float:
-    """Minimum between the centres, from the quartic through the five lowest points."""
+    """Return the minimum between the centres, by the quartic through the five lowest points."""
     middle = min(max(int(np.argmin(values)), 2), x.size - 3)
     around = slice(middle - 2, middle + 3)
     fine = np.linspace(x[middle - 1], x[middle + 1], _FINE)
@@ -127,14 +128,14 @@ def lowest(x: np.ndarray, values: np.ndarray) -> float:
 
 
 def value_at(x: np.ndarray, values: np.ndarray, at: float) -> float:
-    """Value at any place in the cells, from the cubic through four neighbouring centres."""
+    """Return the value at any place in the cells, by the cubic through four centres."""
     after = min(max(int(np.searchsorted(x, at)), 2), x.size - 2)
     around = slice(after - 2, after + 2)
     return float(_polynomial(x[around], values[around], np.array([at]))[0])
 
 
 def _polynomial(nodes: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Polynomial through all nodes, by Newton's divided differences."""
+    """Return the polynomial through all nodes, by Newton's divided differences."""
     parts = values.astype(float)
     for order in range(1, nodes.size):
         parts[order:] = (parts[order:] - parts[order - 1 : -1]) / (nodes[order:] - nodes[:-order])

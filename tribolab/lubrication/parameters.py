@@ -22,7 +22,7 @@ R = TypeVar("R")
 Outlet = Literal["vented", "flooded"]
 Abscissa = Literal["entrainment_speed", "sliding_speed"]
 Method = Literal["auto", "full", "strips"]
-VAPOUR = -1e5  # Pa, a liquid without gas boils at some 1 bar below the pressure outside
+VAPOUR = -1e5  # Pa: a liquid without gas boils at some 1 bar below ambient pressure
 
 
 def _one_of(name: str, value: str, kind: Any) -> None:
@@ -38,17 +38,17 @@ class Liquid:
     Parameters
     ----------
     viscosity
-        eta [Pa s]; that at rest (eta_0) if the liquid is shear-thinning.
+        eta [Pa s]; for a shear-thinning liquid eta_0, at rest.
     extent
-        Where the liquid begins [m], before the contact's middle, and around a ball where it ends.
-        None is everywhere for a line contact and the ball's radius for a ball.
+        Distance from the contact's middle at which the liquid begins [m], for a ball at which it
+        ends. None: everywhere for a line contact, the ball's radius for a ball.
     outlet
-        ``"vented"`` if gas gets into the diverging gap, so that the pressure there is that outside;
-        ``"flooded"`` if none does, and the liquid holds tension down to `cavity_pressure`.
+        ``"vented"`` if gas enters the diverging gap, which is then at ambient pressure;
+        ``"flooded"`` if not, and the liquid sustains tension down to `cavity_pressure`.
     cavity_pressure
-        Pressure [Pa] at which a flooded liquid ruptures, below that outside.
+        Pressure [Pa] at which a flooded liquid ruptures, relative to ambient.
     thinning
-        How the viscosity falls with the shear rate; None for a Newtonian liquid.
+        Decrease of the viscosity with the shear rate; None for a Newtonian liquid.
 
     Examples
     --------
@@ -91,20 +91,21 @@ class Interface:
     shear_stress
         sigma_f [Pa] in the real contact area.
     rough_body
-        ``"stationary"`` or ``"moving"``, see `flow_factors`; None is that of `factors`.
+        ``"stationary"`` or ``"moving"``, see `flow_factors`; None: from `factors`.
     roughness_balance
-        (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster one: -1 if the
-        slower body alone is rough, 1 if the faster one is. None follows `rough_body`.
+        (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster one: -1 if only the
+        slower body is rough, 1 if only the faster one is. None: from `rough_body`.
     factors
-        Factors to use instead of the effective-medium ones.
+        Factors used instead of the effective-medium ones.
     work_of_adhesion
-        Of the bodies under the liquid [J/m2]: adhesion then adds to the contact area.
+        Work of adhesion of the bodies in the liquid [J/m2]: adhesion then increases the contact
+        area.
     slide_roll
         Slide-roll ratio SRR = (u2 - u1)/U [1] of two moving bodies, U = (u1 + u2)/2; None if one
-        body is at rest, which is SRR = 2.
+        body is at rest (SRR = 2).
     abscissa
-        Which speed is given and returned where a slide-roll ratio is stated:
-        ``"entrainment_speed"`` U, or ``"sliding_speed"`` SRR U, as measured curves have it.
+        Speed of arguments and results if a slide-roll ratio is stated: ``"entrainment_speed"`` U,
+        or ``"sliding_speed"`` SRR U, as in measured curves.
 
     Examples
     --------
@@ -144,7 +145,7 @@ class Interface:
 
     @property
     def entrained(self) -> float:
-        """Twice the entrainment speed over the speed that is given [1]."""
+        """Twice the entrainment speed over the given speed [1]."""
         if self.slide_roll is None:
             return 1.0
         return 2.0 if self.abscissa == "entrainment_speed" else 2 / abs(self.slide_roll)
@@ -157,19 +158,19 @@ class Solver:
     Parameters
     ----------
     cells
-        Cells across a line contact; rings of a round one are three eighths of them.
+        Cells across a line contact; a round one has three eighths as many rings.
     domain
-        Length of a line contact's domain over the default.
+        Length of a line contact's domain relative to the default.
     gamma
         Elastic-energy reduction factor [1] of the mean separation.
     area
         Theory of the contact area, see `contact_area_ratio`.
     friction_factors
-        False takes phi_f = phi_fp = 1 and phi_fs = 0 in the friction; flow keeps its factors.
+        False sets phi_f = phi_fp = 1 and phi_fs = 0 in the friction, but not in the flow.
     method
-        Of a ball: ``"full"`` theory on rings and sectors, ``"strips"`` (reduced, within some 6 %
-        where the film is thinner than 0.025 a^2/R), or ``"auto"``: strips within that limit and
-        the full theory beyond, as fits and bands use.
+        For a ball: ``"full"`` theory on rings and sectors, ``"strips"`` (reduced, within some 6 %
+        for films thinner than 0.025 a^2/R), or ``"auto"``: strips within that limit and the full
+        theory beyond, as in fits and bands.
 
     Examples
     --------
@@ -215,14 +216,14 @@ def parameters_of(
     solver: Solver | None = None,
     **options: Any,
 ) -> Parameters:
-    """Combine the parameters of a model.
+    """Return the parameters of a model combined in one object.
 
     Parameters
     ----------
     liquid, interface
-        The objects, or viscosity [Pa s] and shear stress [Pa] alone.
+        The objects, or only viscosity [Pa s] and shear stress [Pa].
     solver
-        None is the default.
+        None: the default.
     **options
         Single parameters by the names of their fields, or ``inlet_length``.
 
@@ -249,12 +250,12 @@ def parameters_of(
 
 
 def as_given(value: Any) -> Any:
-    """Return an object or a stated value, or a number for an array without dims."""
+    """Return an object or a stated value; an array without dims becomes a number."""
     return value if isinstance(value, Liquid | Interface) else stated_value(value)
 
 
 def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Accept the argument names of the last release."""
+    """Return a decorator that accepts the argument names of the last release."""
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         @functools.wraps(function)
@@ -267,7 +268,7 @@ def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def warn_of_old(function: str, options: Mapping[str, Any]) -> None:
-    """Warn of options that are now part of an object."""
+    """Warn of options that are now fields of an object."""
     if not options:
         return
     homes = sorted({_HOME[_RENAMED.get(n, n)] for n in options if _RENAMED.get(n, n) in _HOME})

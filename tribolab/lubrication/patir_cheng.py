@@ -8,11 +8,11 @@ from scipy.special import ndtr
 from tribolab.lubrication.factors import FactorTable, FlowFactors, RoughBody, check_rough_body
 from tribolab.units.conversion import positive
 
-_CONTACT = 1 / 300  # gap in h_rms under which there is no fluid to shear
+_CONTACT = 1 / 300  # gap in h_rms below which no fluid is sheared
 
 
 def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary") -> FlowFactors:
-    """Flow and friction factors of Patir and Cheng for isotropic Gaussian roughness.
+    """Return flow and friction factors of Patir and Cheng for isotropic Gaussian roughness.
 
     Parameters
     ----------
@@ -24,22 +24,22 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
     Returns
     -------
     FlowFactors
-        To be given to `stribeck_curve` as ``factors``.
+        For `stribeck_curve` as ``factors``.
 
     Notes
     -----
-    With H the distance of the undeformed mean planes over h_rms, their film is the nominal one,
-    h = H h_rms: the pressure flow is phi_p h^3, the stresses are (phi_f + phi_fs) eta v/h and
-    phi_fp h/2 dp/dx, with phi_p = 1 - 0.90 exp(-0.56 H); phi_s = 1.899 H^0.98 exp(-0.92 H +
-    0.05 H^2) up to H = 5, 1.126 exp(-0.25 H) beyond [1]_; phi_fp = 1 - 1.40 exp(-0.66 H),
-    phi_fs = 11.1 H^2.31 exp(-2.38 H + 0.11 H^2) up to H = 7 and falling as 1/H^2 beyond,
-    phi_f = h <1/gap> over gaps above h_rms/300 [2]_. `FlowFactors` refers all of them to the mean
-    separation u, that of what gap is left: u/h_rms = H Phi(H) + exp(-H^2/2)/sqrt(2 pi), exact for
-    Gaussian heights that are cut off where they touch. So theirs are converted, phi_p by (h/u)^3,
-    phi_fp by h/u, phi_f and phi_fs by u/h. phi_s stands beside h_rms and stays, as their Couette
-    flow has the mean gap. The fits hold above H = 0.5; below, phi_p is followed down to H = 0,
-    where phi_p h^3 is 0, and phi_fp kept at 1e-3 or more. phi_s and phi_fp are fitted apart and not
-    reciprocal, as effective-medium factors are.
+    With H the distance of the undeformed mean planes over h_rms, the reference film is nominal, h =
+    H h_rms: the pressure flow is phi_p h^3, the stresses are (phi_f + phi_fs) eta v/h and phi_fp
+    h/2 dp/dx, with phi_p = 1 - 0.90 exp(-0.56 H); phi_s = 1.899 H^0.98 exp(-0.92 H + 0.05 H^2) up
+    to H = 5, 1.126 exp(-0.25 H) beyond [1]_; phi_fp = 1 - 1.40 exp(-0.66 H), phi_fs = 11.1 H^2.31
+    exp(-2.38 H + 0.11 H^2) up to H = 7 and falling as 1/H^2 beyond, phi_f = h <1/gap> over gaps
+    above h_rms/300 [2]_. `FlowFactors` refers all of them to the mean separation u of the remaining
+    gap: u/h_rms = H Phi(H) + exp(-H^2/2)/sqrt(2 pi), exact for Gaussian heights truncated at
+    contact. They are converted accordingly: phi_p by (h/u)^3, phi_fp by h/u, phi_f and phi_fs by
+    u/h. phi_s, a factor of h_rms, is unchanged, because their Couette flow has the mean gap. The
+    fits are valid above H = 0.5; below, phi_p is extrapolated to H = 0, where phi_p h^3 is 0, and
+    phi_fp is at least 1e-3. phi_s and phi_fp were fitted separately and are not reciprocal, unlike
+    effective-medium factors.
 
     References
     ----------
@@ -62,7 +62,7 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
         1.899 * nominal**0.98 * np.exp(-0.92 * nominal + 0.05 * low**2),
         1.126 * np.exp(-0.25 * nominal),
     )
-    shear[:2] = 0.0  # below, where nothing flows, it stays as here
+    shear[:2] = 0.0  # constant below, where there is no flow
     correction = 11.1 * high**2.31 * np.exp(-2.38 * high + 0.11 * high**2)
     correction = correction * (high / nominal) ** 2
     mean = _mean_gap(nominal)
@@ -98,7 +98,7 @@ def _mean_gap(distance: np.ndarray) -> np.ndarray:
 
 
 def _mean_inverse(distance: np.ndarray) -> np.ndarray:
-    """Mean of 1/gap over Gaussian heights, by the trapezoidal rule in ln(gap)."""
+    """Return the mean of 1/gap over Gaussian heights, by the trapezoidal rule in ln(gap)."""
     log_gap = np.linspace(np.log(_CONTACT), np.log(80.0), 4001)
     bell = np.exp(-((np.exp(log_gap) - distance[:, None]) ** 2) / 2) / np.sqrt(2 * np.pi)
     return np.trapezoid(bell, log_gap, axis=1)

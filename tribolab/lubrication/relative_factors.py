@@ -17,7 +17,7 @@ _OVER = "relative_separation"
 
 @over_dims(psd=("wavenumber",))
 def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> xr.Dataset:
-    """Flow and friction factors over mean separation in units of the rms roughness.
+    """Return flow and friction factors over mean separation in units of the rms roughness.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ class SolvedCurve(NamedTuple):
     """Stribeck curve with its solutions, from which similar contacts can start."""
 
     curve: xr.Dataset
-    points: list[list[SolvedSpeed]]  # of each load
+    points: list[list[SolvedSpeed]]  # by load
 
 
 def solve_curve(
@@ -46,7 +46,7 @@ def solve_curve(
     parameters: Parameters,
     near: SolvedCurve | None = None,
 ) -> SolvedCurve:
-    """Compute a Stribeck curve of one surface, starting from another if needed.
+    """Return the Stribeck curve of one surface, starting from a similar one if given.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def solve_curve(
     parameters
         Liquid, interface and solver.
     near
-        A curve of a line contact that differs little, at as many loads, to start from.
+        Similar curve of a line contact, with the same number of loads, as a start.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def solve_curve(
     Raises
     ------
     UnitError, AnalysisError
-        As there.
+        As for `stribeck_curve`.
     """
     with one_thread():
         system = system_of(contact, psd, parameters)
@@ -76,7 +76,7 @@ def solve_curve(
     beside: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces)
     if near is not None and not contact.is_round:
         beside = near.points
-    # where both bodies move the liquid is moved as by one of twice the entrainment speed
+    # if both bodies move, entrainment equals that of one body at twice the entrainment speed
     times = parameters.interface.entrained
     magnitudes, back = np.unique(times * np.abs(speeds.values), return_inverse=True)
     used: list[np.ndarray] = []
@@ -131,7 +131,7 @@ def solve_curve(
 
 
 def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str, np.ndarray]:
-    # all in one: the pressures of all meshes have one unit
+    # the areas of all points at once, with pressures in Pa
     solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
     whole = solid + np.stack([p.solution.fields.fluid * p.problem.pressure for p in points])
     hertz = hertz_half_width(force, system.contact)
@@ -152,9 +152,9 @@ def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str,
 def _row(
     system: System, point: SolvedSpeed, force: float, hertz: float, area: np.ndarray
 ) -> dict[str, float]:
-    """Values of a curve at one speed, for a given contact area ratio of its cells.
+    """Return the values of a curve at one speed, for given contact area ratios of its cells.
 
-    That is of the theory asked for, and of the other one (2, cells).
+    `area` contains the ratios of the requested theory, and of the other one (2, cells).
     """
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact

@@ -28,7 +28,7 @@ from tribolab.lubrication.sweep import (
     wet_state,
 )
 
-_FAR = 10.0  # times the speed before: so far a state is not carried if there is a shorter way
+_FAR = 10.0  # ratio of speeds above which a thick film is started directly
 
 
 class System(NamedTuple):
@@ -40,12 +40,12 @@ class System(NamedTuple):
     factors: FlowFactors
     liquid: Liquid
     solver: Solver
-    growth: AdhesiveGrowth | None = None  # of the area by adhesion
-    rolls: bool = False  # both bodies move
+    growth: AdhesiveGrowth | None = None  # growth of the area by adhesion
+    rolls: bool = False  # whether both bodies move
 
     @property
     def line(self) -> LineContact:
-        """Line contact, if it is one."""
+        """The contact as a line contact."""
         assert isinstance(self.contact, LineContact)
         return self.contact
 
@@ -55,13 +55,13 @@ class System(NamedTuple):
         return self.liquid.viscosity
 
     def film(self, force: float, speed: float) -> float:
-        """Film thickness [m] expected at a load [N/m] and speed [m/s]."""
+        """Return the expected film thickness [m] at a load [N/m] and speed [m/s]."""
         if not speed:
             return 0.0
         return thinned_film(self.line, self.liquid, force, speed * abs(self.factors.slide))
 
     def problem(self, force: float, speed: float) -> Problem:
-        """Scales and mesh at one load [N/m] and speed [m/s], that of rest included."""
+        """Return scales and mesh at one load [N/m] and speed [m/s], including rest."""
         return lubrication_problem(
             self.line,
             self.separation,
@@ -85,18 +85,18 @@ class SolvedSpeed(NamedTuple):
 def solve_speeds(
     system: System, force: float, speeds: np.ndarray, near: Sequence[SolvedSpeed] = ()
 ) -> list[SolvedSpeed]:
-    """Solve at each of increasing speeds [m/s].
+    """Return the solutions at increasing speeds [m/s].
 
-    Speeds whose films are alike share a mesh, and which one that is depends on the speed alone: so
-    does the solution. From one mesh to the next the last state is carried over.
+    Speeds with similar films share a mesh, which depends only on the speed, as does the solution.
+    The last state is interpolated from one mesh to the next.
 
     Parameters
     ----------
     system, force, speeds
-        What is to be solved.
+        Contact system, load [N/m] and speeds [m/s].
     near
-        What was solved of a like system: where speed and mesh are the same it is started from.
-        The solution is the same within what it is converged to, in fewer steps.
+        Solutions of a similar system, used as starting states at equal speed and mesh. The solution
+        is the same within the tolerance, in fewer steps.
 
     Raises
     ------
@@ -115,33 +115,33 @@ def solve_speeds(
         if wanted[0] > 0 and len(beside) == len(wanted):
             solutions = sweep_beside(problem, system.viscosity, wanted, beside)
         if solutions is None and points:
-            solutions = _carried_on(system, force, problem, wanted, points[-1])
+            solutions = _continue(system, force, problem, wanted, points[-1])
         if solutions is None:
-            solutions = _afresh(system, force, problem, np.array(wanted))
+            solutions = _restart(system, force, problem, np.array(wanted))
         points += [SolvedSpeed(v, problem, s) for v, s in zip(wanted, solutions, strict=True)]
     return points
 
 
-def _carried_on(
+def _continue(
     system: System, force: float, problem: Problem, speeds: list[float], last: SolvedSpeed
 ) -> list[Solution] | None:
-    """Continue from the last speed on another mesh; None if that fails."""
+    """Return solutions continued from the last speed on another mesh; None if that fails."""
     around = problem, system.line, system.liquid, force
-    soon = system.psd is None or is_thick(*around, speeds[0])  # is there by itself
+    soon = system.psd is None or is_thick(*around, speeds[0])  # direct start possible
     if not last.speed or (soon and speeds[0] > _FAR * last.speed):
         return None
     start = carried_state(problem, last.problem, last.solution.state)
     try:
         return sweep(problem, system.viscosity, [last.speed, *speeds], start)[1:]
-    except AnalysisError:  # no loss: it is tried from rest, which tells what is wrong
+    except AnalysisError:  # then the solution starts from rest, and its error gives the reason
         return None
 
 
-def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) -> list[Solution]:
-    """Solve from the dry contact, from thick films, or between smooth surfaces.
+def _restart(system: System, force: float, problem: Problem, speeds: np.ndarray) -> list[Solution]:
+    """Return solutions from the dry contact, from thick films, or between smooth surfaces.
 
-    The solution is the same whichever way it is reached. From the dry contact is the sure way, but
-    where that has closed its channels, or the first speed parts the surfaces, it is a long one.
+    The solution is independent of the start. The dry contact is the most reliable start, but slow
+    if its flow channels are closed, or if the first speed separates the surfaces.
     """
     moving = speeds[speeds > 0]
     around = problem, system.line, system.liquid, force
@@ -185,5 +185,5 @@ def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) 
 
 
 def _is_sealed(problem: Problem, rest: State) -> bool:
-    """Whether the dry contact closes all flow channels somewhere."""
+    """Return whether the dry contact closes all flow channels somewhere."""
     return bool(rest.film.min() * problem.gap < problem.factors.percolation_separation)

@@ -34,7 +34,7 @@ def stribeck_curve(
     solver: Solver | None = None,
     **options: Any,
 ) -> xr.Dataset:
-    """Friction coefficient of a lubricated rough contact over sliding speed (and load).
+    """Return the friction coefficient of a lubricated rough contact over sliding speed (and load).
 
     Parameters
     ----------
@@ -42,59 +42,57 @@ def stribeck_curve(
         `LineContact` or `PointContact`.
     psd
         Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further dims,
-        which the result has, too; None for smooth surfaces.
+        which become dims of the result; None for smooth surfaces.
     liquid
-        `Liquid`, or its viscosity eta [Pa s] alone; a DataArray of viscosities over (medium), or
-        any dims that the result will have.
+        `Liquid`, or only its viscosity eta [Pa s]; a DataArray of viscosities over (medium) or
+        other dims, which become dims of the result.
     load
-        F_N/L [N/m], of a ball F_N [N], above zero; several make a dim.
+        F_N/L [N/m], for a ball F_N [N], above zero; several loads become a dim.
     interface
-        `Interface`, or the shear stress sigma_f [Pa] in the real contact area alone; a DataArray
-        of shear stresses as for `liquid`.
+        `Interface`, or only the shear stress sigma_f [Pa] in the real contact area; a DataArray of
+        shear stresses as for `liquid`.
     speed
         Sliding speeds v [m/s] (sliding_speed) of one body, the other being at rest; with a
         slide-roll ratio entrainment speeds U = (u1 + u2)/2 (entrainment_speed). 0 is the dry
         contact; a negative speed is the mirror image of the positive one.
     solver
-        `Solver`; None is the default.
+        `Solver`; None: the default.
     **options
         Single fields of these three, as they were arguments in the last release.
 
     Returns
     -------
     xarray.Dataset
-        Over ``sliding_speed`` (and ``load``): ``friction_coefficient`` and its parts
-        ``_couette``, ``_pressure`` and ``_solid``; ``friction_without_factors``, the coefficient
-        that `friction_factors` False gives; ``friction_per_shear_stress`` [1/Pa], which
-        times sigma_f is the solid part, and ``friction_per_shear_stress_other``, the same with the
-        corrected contact area where `area` is Persson's, else with his; ``minimum_separation``,
-        ``central_separation`` [m];
-        ``contact_area_ratio`` [1], real area over that of the Hertz contact, 2 a L;
-        ``solid_load_share`` [1]; and the proof of every point: ``residual``, ``load_balance``,
-        ``flux_variation``, ``iterations``. With a slide-roll ratio, the coefficient is half of the
-        difference between both signs of it, as mini traction machines measure: Couette and solid
-        part; ``_pressure`` is then rolling friction, and not in it. Of a ball the attribute
-        ``method`` says which theory was used.
+        Over ``sliding_speed`` (and ``load``): ``friction_coefficient`` and its parts ``_couette``,
+        ``_pressure`` and ``_solid``; ``friction_without_factors``, the coefficient for
+        `friction_factors` False; ``friction_per_shear_stress`` [1/Pa], which times sigma_f is the
+        solid part, and ``friction_per_shear_stress_other``, the same with the corrected contact
+        area if `area` is Persson's, else with Persson's; ``minimum_separation``,
+        ``central_separation`` [m]; ``contact_area_ratio`` [1], real area over that of the Hertz
+        contact, 2 a L; ``solid_load_share`` [1]; and convergence data: ``residual``,
+        ``load_balance``, ``flux_variation``, ``iterations``. With a slide-roll ratio, the
+        coefficient is half of the difference between both signs of it, as mini traction machines
+        measure: Couette and solid part; ``_pressure`` is then rolling friction and not included.
+        For a ball the attribute ``method`` is the theory used.
 
     Raises
     ------
     UnitError, AnalysisError
-        If an argument has a wrong unit or value, or a point cannot be solved. No point is ever
-        returned unsolved.
+        If an argument has a wrong unit or value, or a point cannot be solved. Unsolved points are
+        never returned.
 
     Notes
     -----
     Eqs. (3)-(5), (9), (10) of [1]_ with cavitation (p_fluid >= 0); friction by Eq. (4), whose
-    pressure gradient is the fluid's. In the cavity the fluid covers the part of the flat on which
-    what it entrains, (v/2)(u + h_rms phi_s), is the flux.
+    pressure gradient is the fluid's. In the cavity the fluid covers the share of the flat for which
+    the entrained (v/2)(u + h_rms phi_s) equals the flux.
 
     With a work of adhesion the area is A(p_cont) A_adh(p)/A_0(p), A_adh being that of `adhesion` at
-    the whole pressure, inside the nominal contact. This mean field leaves out that attraction also
-    pulls the bodies together (p(u), the width of the contact and the load that the liquid carries
-    stay as they are), that contact once made is harder to open than to make, that the liquid has to
-    be squeezed out before the bodies bind, and that the sliding itself may be by waves of
-    detachment (Sec. 8 of [1]_): it tells the friction of the boundary regime, and not at which
-    speed it ends.
+    the total pressure, inside the nominal contact. This mean-field theory neglects that attraction
+    also pulls the bodies together (p(u), the contact width and the load carried by the liquid are
+    unchanged), that adhesion is hysteretic, that the liquid must be squeezed out before the bodies
+    adhere, and that sliding may occur by waves of detachment (Sec. 8 of [1]_). It predicts the
+    friction of the boundary regime, but not the speed at which that ends.
 
     References
     ----------
@@ -117,19 +115,19 @@ def stribeck_curve(
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> xr.Dataset:
-    """Add a shear stress to a computed curve without solving it again.
+    """Return a computed curve with another shear stress, without solving it again.
 
     Parameters
     ----------
     curve
         From `stribeck_curve` with the shear stress ``"0 Pa"``.
     shear_stress
-        sigma_f [Pa]; of several curves one for each, e.g. over (surface).
+        sigma_f [Pa]; for several curves one for each, e.g. over (surface).
 
     Returns
     -------
     xarray.Dataset
-        The curve with its solid part; of several curves with ``shear_stress`` [Pa], too.
+        The curve with its solid part; for several curves also ``shear_stress`` [Pa].
 
     Examples
     --------

@@ -24,16 +24,16 @@ from tribolab.lubrication.mixed import (
 )
 from tribolab.lubrication.parameters import Liquid
 
-_SUBSTEPS = 100  # failures on the way that are forgiven
+_SUBSTEPS = 100  # number of tolerated failures
 _FINEST = 1e-2  # smallest step in ln v
 _THICK = 5.0  # roughnesses
-_GROWTH = np.log(4.0)  # of the film, at most, in what is extrapolated to the next speed
-_START_POINTS = 101  # of the line contact that the dry contact starts from
-_DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
+_GROWTH = np.log(4.0)  # largest change of ln(film) in an extrapolation to the next speed
+_START_POINTS = 101  # points of the line contact from which the dry contact starts
+_DECADES = 12  # range of the search for a speed that starts from the dry contact
 
 
 def dry_state(problem: Problem, contact: LineContact, separation: Separation, load: float) -> State:
-    """Solve the contact at rest on the problem's own mesh.
+    """Return the solved contact at rest on the problem's own mesh.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def dry_state(problem: Problem, contact: LineContact, separation: Separation, lo
 
 
 def carried_state(problem: Problem, before: Problem, state: State) -> State:
-    """Interpolate a state to another mesh of the same contact."""
+    """Return a state interpolated to another mesh of the same contact."""
     mesh, old = problem.mesh, before.mesh
     pressure = np.interp(mesh.x, old.x, state.pressure, left=0.0, right=0.0)
     pressure *= problem.load / (mesh.weight @ pressure)
@@ -68,7 +68,7 @@ def carried_state(problem: Problem, before: Problem, state: State) -> State:
 def is_thick(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> bool:
-    """Whether the film at a speed is much thicker than the roughness."""
+    """Return whether the film at a speed is much thicker than the roughness."""
     film = thinned_film(contact, liquid, load, speed)
     return film >= _THICK * problem.factors.rms_roughness
 
@@ -76,12 +76,12 @@ def is_thick(
 def lifted_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Find a state at one speed from a film that is thick compared with the roughness.
+    """Return a state at one speed, from a film that is thick compared with the roughness.
 
     Raises
     ------
     NotConvergedError
-        If there is none.
+        If no solution is found.
     """
     above = speed
     while not is_thick(problem, contact, liquid, load, above):
@@ -97,16 +97,16 @@ def lifted_state(
 def wet_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Find a state between smooth surfaces at one speed, from a Hertz contact on a soft layer.
+    """Return a state between smooth surfaces at one speed, from a Hertz contact on a soft layer.
 
-    A repulsion that ends at a third of the film expected there stands in for the contact until
-    the fluid carries the load: as with roughness, rising speed lifts the bodies off it. Where the
-    film is thin beside the cells it may fail: then from a faster one down.
+    An auxiliary repulsion, which ends at a third of the expected film, acts as contact until the
+    fluid carries the load: as with roughness, increasing speed separates the bodies. It may fail
+    for films that are thin compared with the cells: then the solution starts from a higher speed.
 
     Raises
     ------
     NotConvergedError
-        If there is none.
+        If no solution is found.
     """
     try:
         return _cushioned(problem, contact, liquid, load, speed)
@@ -121,7 +121,7 @@ def wet_state(
 def _cushioned(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Solve at rest with the auxiliary repulsion, then at the speed."""
+    """Return the state solved at rest with the auxiliary repulsion, then at the speed."""
     film = thinned_film(contact, liquid, load, speed)
     x = problem.mesh.x * problem.half_width
     pressure = hertz_pressure(x, load, contact) / problem.pressure
@@ -142,7 +142,7 @@ class _Cushion(NamedTuple):
     film: float  # [m]
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pressure [Pa] and its slope [Pa/m] at separations [m]."""
+        """Return pressure [Pa] and its slope [Pa/m] at separations [m]."""
         pressure = self.highest * np.exp(10 - 30 * separation / self.film)
         return pressure, -30 / self.film * pressure
 
@@ -154,21 +154,21 @@ def sweep(
     start: State | None,
     lifted: Callable[[], State] | None = None,
 ) -> list[Solution]:
-    """Solve at increasing speeds, each from the previous ones.
+    """Return the solutions at increasing speeds, each started from the previous ones.
 
     Parameters
     ----------
     problem
-        What is to be solved.
+        Problem of the contact.
     viscosity
         [Pa s].
     speeds
-        [m/s], rising, above zero.
+        [m/s], increasing, above zero.
     start
-        Where to start: the dry contact, or the state at the first speed; None for nowhere.
+        Starting state: the dry contact, or the state at the first speed; None without a start.
     lifted
-        Gives a guess at the last speed. Where the contact percolates, rising speed lifts it at
-        once and not by and by: the speeds beyond are then solved from the last one downwards.
+        Function that returns a guess at the last speed. If the contact percolates, increasing speed
+        lifts it suddenly: the higher speeds are then solved from the last one downwards.
 
     Raises
     ------
@@ -177,8 +177,8 @@ def sweep(
 
     Notes
     -----
-    ln u goes on in ln v by the parabola through the last three speeds, or the secant through two.
-    Where Newton's method fails, the step in ln v is halved.
+    ln u is extrapolated in ln v by the parabola through the last three speeds, or the secant
+    through two. If Newton's method fails, the step in ln v is halved.
     """
     speeds = list(speeds)
     solved, lost = _march(problem, viscosity, speeds, start) if start else ([], None)
@@ -197,29 +197,29 @@ def sweep(
 def sweep_beside(
     problem: Problem, viscosity: float, speeds: list[float], near: Sequence[State]
 ) -> list[Solution] | None:
-    """Solve at increasing speeds, each from a similar contact; None if that fails.
+    """Return solutions at increasing speeds, each from a similar contact; None if that fails.
 
     Parameters
     ----------
     problem, viscosity, speeds
         As for `sweep`.
     near
-        The like contact's states at these speeds, on the same mesh.
+        States of a similar contact at these speeds, on the same mesh.
 
     Notes
     -----
-    By how much the films differ, ln u - ln u_near, goes on in ln v as ln u does in `sweep`. It is
-    small and smooth, so that a step of Newton's method or two are saved at every speed.
+    The difference ln u - ln u_near is extrapolated in ln v, as ln u in `sweep`. It is small and
+    smooth, which saves one or two Newton steps at every speed.
     """
     solved: list[Solution] = []
     for speed, state in zip(speeds, near, strict=True):
         last = slice(max(len(solved) - 3, 0), len(solved))
         pairs = [(a.state, b) for a, b in zip(solved[last], near[last], strict=True)]
         weights = _extrapolation(list(np.log(speeds[last])), np.log(speed)) if pairs else []
-        start = _moved_alike(problem.mesh, state, pairs[len(pairs) - len(weights) :], weights)
+        start = _shift_state(problem.mesh, state, pairs[len(pairs) - len(weights) :], weights)
         try:
             solved.append(solve_speed(problem, couette_number(problem, viscosity, speed), start))
-        except NotConvergedError:  # no loss: it is solved as if there were no such contact
+        except NotConvergedError:  # then the contact is solved without a similar one
             return None
     return solved
 
@@ -227,7 +227,7 @@ def sweep_beside(
 def _march(
     problem: Problem, viscosity: float, speeds: list[float], start: State
 ) -> tuple[list[Solution], NotConvergedError | None]:
-    """Solve speed by speed; return the solutions, and the reason of an early end."""
+    """Return solutions speed by speed, and the reason of an early end."""
     solved: list[Solution] = []
     known: list[tuple[float, State]] = []  # ln v and state of the last three, the newest last
     budget = _SUBSTEPS
@@ -263,13 +263,13 @@ def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: 
     last = known[-1][1]
     weights = _extrapolation([at for at, _ in known], aim)
     used = [(state, last) for _, state in known[len(known) - len(weights) :]]
-    return _moved_alike(mesh, last, used, weights)
+    return _shift_state(mesh, last, used, weights)
 
 
-def _moved_alike(
+def _shift_state(
     mesh: Mesh, state: State, pairs: Sequence[tuple[State, State]], weights: Sequence[float]
 ) -> State:
-    """Shift a state by the weighted differences of pairs of states."""
+    """Return a state shifted by the weighted differences of pairs of states."""
     if not pairs:
         return state
     weighted = list(zip(weights, pairs, strict=True))
@@ -280,10 +280,10 @@ def _moved_alike(
 
 
 def _extrapolation(at: list[float], aim: float) -> list[float]:
-    """Weights of the last points that extrapolate to a target.
+    """Return the weights of the last points that extrapolate to a target.
 
-    By the parabola where the steps are alike, by the secant where they are not, but by no more
-    than three of its steps; the last value alone where rounding tells two points apart.
+    Parabola for similar steps, else secant over at most three of its steps; only the last value if
+    two points differ by rounding.
     """
     if len(at) < 2 or at[-1] == at[-2]:
         return [1.0]

@@ -28,7 +28,7 @@ _REFERENCE = (
 
 
 def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) -> System:
-    """Collect the parameters common to all speeds and loads."""
+    """Return the parameters common to all speeds and loads."""
     liquid, interface, solver = parameters
     factors, body = interface.factors, interface.rough_body
     if factors is None:
@@ -64,7 +64,7 @@ def checked_loads(load: str | ArrayLike, contact: Contact) -> xr.DataArray:
 
 
 def checked_speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArray:
-    """Return sliding speeds [m/s] (sliding_speed); AnalysisError if one has no film."""
+    """Return sliding speeds [m/s] (sliding_speed); AnalysisError if one leaves no film."""
     speeds = labelled(speed, "sliding_speed")
     if speeds.ndim == 0:
         speeds = speeds.expand_dims("sliding_speed")
@@ -76,7 +76,7 @@ def checked_speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArr
 
 
 def system_attributes(system: System) -> dict[str, str | float | int]:
-    """Attributes of a result with its parameters and grid."""
+    """Return the attributes of a result with its parameters and grid."""
     return {
         "viscosity_Pa_s": system.viscosity,
         "youngs_modulus_Pa": system.contact.youngs_modulus,
@@ -95,7 +95,7 @@ def system_attributes(system: System) -> dict[str, str | float | int]:
 
 
 def _beyond_default(system: System) -> dict[str, str | float | int]:
-    """Attributes for layers, elastic counter bodies and sealed outlets."""
+    """Return attributes for layers, elastic counter bodies and sealed outlets."""
     contact, liquid, factors = system.contact, system.liquid, system.factors
     balance = factors.roughness_balance
     told = {
@@ -117,7 +117,7 @@ def with_adhesion(
     if work_of_adhesion is None or system.psd is None:
         return system
     modulus = _stiffness(system)
-    # a film's pressure peaks a little above that of Hertz
+    # the peak pressure of a film slightly exceeds that of Hertz
     highest = 1.5 * float(hertz_max_pressure(highest_load, system.contact))
     return system._replace(growth=adhesive_growth(system.psd, modulus, work_of_adhesion, highest))
 
@@ -125,7 +125,7 @@ def with_adhesion(
 def real_area(
     system: System, solid: np.ndarray, whole: np.ndarray, theory: AreaTheory
 ) -> np.ndarray:
-    """Relative contact area at the solid's pressure and the whole one [Pa]."""
+    """Return the relative contact area at the solid and the total pressure [Pa]."""
     if system.psd is None:
         return np.zeros_like(solid)
     area = contact_area_ratio(solid, system.psd, _stiffness(system), theory)
@@ -133,5 +133,5 @@ def real_area(
 
 
 def _stiffness(system: System) -> float:
-    """E* of the roughness [Pa]; a strip of a ball bends with another."""
+    """Return E* for the roughness [Pa], which differs from that of a ball's strip."""
     return system.separation.effective_modulus if system.separation else np.nan

@@ -1,4 +1,4 @@
-"""Liquids whose viscosity falls with the shear rate."""
+"""Shear-thinning liquids."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _STEP = 1e-4  # of ln(rate), for slopes
 
 @dataclass(frozen=True)
 class ShearThinning:
-    """Viscosity over the shear rate, in units of that at rest.
+    """Viscosity over the shear rate, relative to that at rest.
 
     Made by `carreau_yasuda`, `cross`, `power_law` or `rheometer_table`.
 
     Parameters
     ----------
     model
-        Its name, for results.
+        Name of the law, for results.
     curve
         eta/eta_0 [1] over shear rates [1/s], above zero.
 
@@ -41,23 +41,23 @@ class ShearThinning:
     curve: Callable[[np.ndarray], np.ndarray] = field(repr=False)
 
     def __call__(self, rate: np.ndarray) -> np.ndarray:
-        """Viscosity of shear, over that at rest."""
+        """Return the viscosity relative to that at rest."""
         return np.asarray(self.curve(np.maximum(np.abs(rate), 1e-30)))
 
     def tangent(self, rate: np.ndarray) -> np.ndarray:
-        """D tau/d rate over the viscosity at rest."""
+        """Return d tau/d rate relative to the viscosity at rest."""
         up, down = (self(rate * np.exp(s)) for s in (_STEP, -_STEP))
         exponent = np.log(up / down) / (2 * _STEP)
         return np.asarray(self(rate) * np.maximum(1 + exponent, 1e-3))
 
     def pressure_flow(self, rate: np.ndarray) -> np.ndarray:
-        """Viscosity of the flow that a pressure gradient adds to shear, over that at rest.
+        """Return the viscosity of pressure flow superposed on shear, relative to that at rest.
 
         Notes
         -----
-        Across the shear the gradient meets eta, along it d tau/d rate:
-        ``eta_p = (eta eta_t^2)^(1/3)`` is within 1 % of the exact plane flow's film from 1 mm/s
-        on, and within 3 % at 10 um/s.
+        The viscosity is eta for a gradient across the shear, and eta_t = d tau/d rate along it. The
+        film with ``eta_p = (eta eta_t^2)^(1/3)`` is within 1 % of that of the exact plane flow
+        above 1 mm/s, and within 3 % at 10 um/s.
         """
         return np.asarray(np.cbrt(self(rate) * self.tangent(rate) ** 2))
 
@@ -65,7 +65,7 @@ class ShearThinning:
 def carreau_yasuda(
     time: str | float, exponent: float, transition: float = 2.0, rest: float = 0.0
 ) -> ShearThinning:
-    """Carreau and Yasuda's law, ``r + (1 - r) (1 + (time rate)^a)^((n - 1)/a)``.
+    """Return the law of Carreau and Yasuda, ``r + (1 - r) (1 + (time rate)^a)^((n - 1)/a)``.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def carreau_yasuda(
 
 
 def cross(time: str | float, exponent: float, rest: float = 0.0) -> ShearThinning:
-    """Cross's law, ``r + (1 - r)/(1 + (time rate)^(1 - n))``."""
+    """Return Cross's law, ``r + (1 - r)/(1 + (time rate)^(1 - n))``."""
     of = _checked(time, exponent, rest)
     return ShearThinning(
         f"Cross, time {of:g} s, n = {exponent:g}, rest {rest:g}",
@@ -97,7 +97,7 @@ def cross(time: str | float, exponent: float, rest: float = 0.0) -> ShearThinnin
 
 
 def power_law(rate: str | float, exponent: float) -> ShearThinning:
-    """Power law, ``(rate/rate_0)^(n - 1)``, Newtonian below the rate [1/s] that is given."""
+    """Return the power law ``(rate/rate_0)^(n - 1)``, Newtonian below the given rate [1/s]."""
     start = positive(rate, "1/s", "rate")
     _checked(1.0, exponent, 0.0)
     return ShearThinning(
@@ -107,12 +107,12 @@ def power_law(rate: str | float, exponent: float) -> ShearThinning:
 
 
 def rheometer_table(rate: ArrayLike, viscosity: ArrayLike) -> tuple[float, ShearThinning]:
-    """Viscosity at rest [Pa s] and the law of a rheometer's table.
+    """Return the viscosity at rest [Pa s] and the law of a rheometer's table.
 
     Parameters
     ----------
     rate, viscosity
-        Shear rates [1/s], rising, and viscosities [Pa s] at them; outside they stay as at the ends.
+        Increasing shear rates [1/s] and the viscosities [Pa s], constant outside the range.
     """
     rates, eta = np.asarray(rate, dtype=float), np.asarray(viscosity, dtype=float)
     if rates.size < 2 or rates.shape != eta.shape or np.any(np.diff(rates) <= 0):
@@ -131,7 +131,7 @@ def rheometer_table(rate: ArrayLike, viscosity: ArrayLike) -> tuple[float, Shear
 def viscous_heating(
     friction: float, load: float, speed: float, half_width: float, conductivity: float = 0.3
 ) -> float:
-    """Temperature rise [K] of a liquid film by its own friction, of the order of magnitude.
+    """Return the temperature rise [K] of a liquid film by its friction, as an order of magnitude.
 
     Parameters
     ----------
@@ -145,12 +145,12 @@ def viscous_heating(
 
     Notes
     -----
-    The heat mu F v per length leaves a strip of width 2 a in a half-space; across the time a/v that
-    the flat takes it diffuses sqrt(kappa a/v), at most a: ``q delta/k`` with q = mu F v/(2 a), into
-    both bodies.
+    The heat mu F v per length leaves a strip of width 2 a into a half-space. During the transit
+    time a/v it diffuses by delta = sqrt(kappa a/v), at most a: ``q delta/k`` with q = mu F v/(2 a),
+    divided between both bodies.
     """
     flux = friction * load * speed / (2 * half_width)
-    diffusivity = conductivity / 2e6  # heat capacity by volume of polymers and liquids, J/(m3 K)
+    diffusivity = conductivity / 2e6  # volumetric heat capacity of polymers and liquids, J/(m3 K)
     depth = min(half_width, float(np.sqrt(diffusivity * half_width / max(speed, 1e-30))))
     return float(flux * depth / conductivity / 2)
 
@@ -160,7 +160,7 @@ class ThinnedFactors(NamedTuple):
 
     factors: FlowFactors
     law: ShearThinning
-    sliding: float  # speed of one body against the other [m/s]
+    sliding: float  # relative speed of the bodies [m/s]
 
     @property
     def rms_roughness(self) -> float:
@@ -168,7 +168,7 @@ class ThinnedFactors(NamedTuple):
         return self.factors.rms_roughness
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
-        """As `FlowFactors.transport`, phi_p over the viscosity of the pressure flow."""
+        """Return `FlowFactors.transport` with phi_p over the viscosity of the pressure flow."""
         phi, slope, entrained, entrained_slope = self.factors.transport(u)
         rate = self.sliding / u
         thin = self.law.pressure_flow(rate)
@@ -177,12 +177,12 @@ class ThinnedFactors(NamedTuple):
         return phi / thin, (slope - phi * by_film) / thin, entrained, entrained_slope
 
     def at(self, separation: np.ndarray) -> Factors:
-        """As `FlowFactors.at`, the factors of shear times the viscosity of shear."""
+        """Return `FlowFactors.at` with the factors of shear times the viscosity of shear."""
         factors, thin = self.factors.at(separation), self.relative_viscosity(separation)
         return factors._replace(phi_f=factors.phi_f * thin, phi_fs=factors.phi_fs * thin)
 
     def relative_viscosity(self, separation: np.ndarray) -> np.ndarray:
-        """Viscosity of shear at mean separations [m], over that at rest."""
+        """Return the shear viscosity at mean separations [m], relative to that at rest."""
         return self.law(self.sliding / separation)
 
 

@@ -14,10 +14,10 @@ _SYNONYMS = {"glycerine": "glycerol", "glycerin": "glycerol", "silicon oil": "si
 _OIL = re.compile(r"silicone oil[ _]*(\d+(?:\.\d+)?) *(?:cst|mm2/s|mm²/s)?$")
 _ZERO = 273.15  # K
 _HIGHEST = {"water": 100.0, "glycerol": 100.0, "silicone oil": 150.0}  # degrees Celsius
-# How far the formulas and the grades of oils lie from what is in the bottle, relative
+# Relative uncertainty of the formulas and of the grades of oils
 _FORMULA = {"water": 0.01, "glycerol": 0.02, "silicone oil": 0.03}
-# Polydimethylsiloxane by its nominal viscosity at 25 degrees Celsius [mm2/s]: density there over
-# that of water, and by what share the viscosity falls from 37.8 to 98.9 degrees Celsius [2]_
+# Polydimethylsiloxane by nominal viscosity at 25 degrees Celsius [mm2/s]: density there relative to
+# water, and relative decrease of the viscosity from 37.8 to 98.9 degrees Celsius [2]_
 _OILS = (
     (1.0, 0.818, 0.37),
     (2.0, 0.873, 0.48),
@@ -30,7 +30,7 @@ _OILS = (
     (10000.0, 0.975, 0.60),
     (100000.0, 0.977, 0.61),
 )
-_EXPANSION = 9.5e-4  # 1/K, of the volume of these oils
+_EXPANSION = 9.5e-4  # 1/K, volumetric expansion of these oils
 
 
 class Viscosity(NamedTuple):
@@ -45,7 +45,7 @@ class Viscosity(NamedTuple):
     per_water
         d ln(viscosity)/d(mass fraction of water) [1].
     formula
-        Relative standard uncertainty of the formula itself [1].
+        Relative standard uncertainty of the formula [1].
     """
 
     value: float
@@ -61,7 +61,7 @@ class Viscosity(NamedTuple):
         temperature
             Standard uncertainty of the temperature [K].
         water_content
-            That of the mass fraction of water [1].
+            Standard uncertainty of the mass fraction of water [1].
 
         Examples
         --------
@@ -76,7 +76,7 @@ class Viscosity(NamedTuple):
 def liquid_viscosity(
     liquid: str, temperature: str | float, water_content: str | float = 0.0
 ) -> Viscosity:
-    """Viscosity of glycerol with water, of water, or of a silicone oil.
+    """Return the viscosity of glycerol with water, of water, or of a silicone oil.
 
     Parameters
     ----------
@@ -95,15 +95,15 @@ def liquid_viscosity(
     Raises
     ------
     AnalysisError
-        If the liquid is not known, or is no liquid at this temperature, or has no water in it.
+        If the liquid is unknown, not liquid at this temperature, or cannot contain water.
     UnitError
         If a text has no unit or a wrong one.
 
     Notes
     -----
-    Glycerol with water is Cheng's formula [1]_, good to some two per cent from 0 to 100 °C. Oils go
-    from their nominal viscosity by the law of Walther, ``log log(nu + 0.7) = A - B log T``, with
-    B such that it falls by the tabulated share [2]_ between 37.8 and 98.9 °C.
+    Glycerol with water: Cheng's formula [1]_, accurate to some two per cent from 0 to 100 °C. Oils:
+    nominal viscosity and Walther's law, ``log log(nu + 0.7) = A - B log T``, with B from the
+    tabulated decrease [2]_ between 37.8 and 98.9 °C.
 
     References
     ----------
@@ -131,7 +131,7 @@ def liquid_viscosity(
             f"{water:g} in {shown(name)}"
         )
     if kind == "silicone oil":
-        return _oil(float(name.split()[2]), kelvin)
+        return _silicone_oil(float(name.split()[2]), kelvin)
     celsius = kelvin - _ZERO
     of_water = 1.0 if kind == "water" else water
     step, drop = 0.01, 1e-4
@@ -144,7 +144,7 @@ def liquid_viscosity(
 
 
 def knows_liquid(name: str) -> bool:
-    """Whether the viscosity of a medium is known by its name.
+    """Return whether the viscosity of a medium is known by its name.
 
     Examples
     --------
@@ -177,7 +177,7 @@ def _named(liquid: str) -> str:
 
 
 def _glycerol(celsius: float, water: float) -> float:
-    """Viscosity [Pa s] of glycerol with a mass fraction of water, Eqs. (6), (21), (22) of Cheng."""
+    """Return the viscosity [Pa s] of glycerol with a mass fraction of water, Cheng's Eq. (6)."""
     t, glycerol = celsius, 1.0 - water
     of_water = 1.790e-3 * math.exp((-1230 - t) * t / (36100 + 360 * t))
     pure = 12.100 * math.exp((-1233 + t) * t / (9900 + 70 * t))
@@ -187,9 +187,9 @@ def _glycerol(celsius: float, water: float) -> float:
     return float(of_water ** (water + mixing) * pure ** (glycerol - mixing))
 
 
-def _oil(nominal: float, kelvin: float) -> Viscosity:
-    """Viscosity of a silicone oil of a given grade [mm2/s at 25 degrees Celsius]."""
-    from scipy.optimize import brentq  # who names no oil waits for nothing
+def _silicone_oil(nominal: float, kelvin: float) -> Viscosity:
+    """Return the viscosity of a silicone oil of a given grade [mm2/s at 25 degrees Celsius]."""
+    from scipy.optimize import brentq  # imported only if an oil is named
 
     density, falls = _of_grade(nominal)
 
@@ -212,7 +212,7 @@ def _oil(nominal: float, kelvin: float) -> Viscosity:
 
 
 def _of_grade(nominal: float) -> tuple[float, float]:
-    """Density relative to water and temperature dependence of viscosity for a grade."""
+    """Return density relative to water and temperature dependence of viscosity for a grade."""
     for low, high in zip(_OILS, _OILS[1:], strict=False):
         if low[0] <= nominal <= high[0]:
             part = math.log(nominal / low[0]) / math.log(high[0] / low[0])

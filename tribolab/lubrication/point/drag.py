@@ -13,13 +13,13 @@ from tribolab.lubrication.point.equations import PointProblem, PointSolution
 def point_friction(
     problem: PointProblem, solution: PointSolution
 ) -> tuple[FluidFriction, FluidFriction]:
-    """Fluid friction with the friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
+    """Return the fluid friction with friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
 
     Notes
     -----
-    The drag is ``sum (phi_f + phi_fs) s eta v/u dA + sum_faces phi_fp (u/2)(p_R - p_L) int n_x``,
-    s being the share of the flat that streamers cover in the cavity (`streamer_share`). It is that
-    of the liquid inside the mesh: of an unbounded one it grows as ln r.
+    The drag is ``sum (phi_f + phi_fs) s eta v/u dA + sum_faces phi_fp (u/2)(p_R - p_L) int n_x``, s
+    being the share of the flat covered by streamers in the cavity (`streamer_share`). Only the
+    liquid inside the mesh is included: the drag of an unbounded liquid diverges as ln r.
     """
     if solution.couette == 0:
         return FluidFriction(0.0, 0.0), FluidFriction(0.0, 0.0)
@@ -39,10 +39,10 @@ def point_friction(
 
 
 def streamer_share(problem: PointProblem, solution: PointSolution) -> np.ndarray:
-    """Share of each cell covered by liquid: 1 in the full film, less in the cavity.
+    """Return the share of each cell covered by liquid: 1 in the full film, less in the cavity.
 
-    There the liquid goes with the flow, div(s (v/2)(u + h phi_s)) = 0, upwind from where the film
-    ruptures.
+    In the cavity the liquid is advected, div(s (v/2)(u + h phi_s)) = 0, solved upwind from the
+    rupture of the film.
     """
     faces, dry = problem.faces, solution.dry
     cavity = np.flatnonzero(dry)
@@ -52,7 +52,7 @@ def streamer_share(problem: PointProblem, solution: PointSolution) -> np.ndarray
     between = faces.mean @ solution.film
     moved = faces.along * problem.factors.transport(between * problem.gap)[2]
     moved *= solution.couette / problem.gap
-    # which of a face's two cells is upstream: the first where the flow is towards the second
+    # upstream cell of each face: the first if the flow is towards the second
     first, second = (sparse.csr_matrix((faces.gradient * sign).maximum(0)) for sign in (-1, 1))
     upstream = sparse.diags_array((moved > 0).astype(float)) @ first
     upstream = upstream + sparse.diags_array((moved <= 0).astype(float)) @ second

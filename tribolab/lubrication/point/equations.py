@@ -17,9 +17,9 @@ from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 _STEPS = 25
 _CAP = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-8  # of the highest pressure, and of the load
-_LEAK = 1e-10  # share of the smooth conductance that is left beyond percolation
-_UNTOUCHED = 1e-13  # slope of the contact pressure below which a cell of the cavity is known
-FULL_LOAD = 8 / 3  # of a ball in units of P a^2, whatever the load
+_LEAK = 1e-10  # share of the smooth conductance that remains below percolation
+_UNTOUCHED = 1e-13  # contact stiffness below which a cavity cell's pressure is fixed
+FULL_LOAD = 8 / 3  # of a ball in units of P a^2, at any load
 
 
 class Faces(NamedTuple):
@@ -71,17 +71,17 @@ class PointProblem(NamedTuple):
 
     mesh: PolarMesh
     factors: FlowFactors
-    separation: Repulsion | None  # none between smooth surfaces
+    separation: Repulsion | None  # None for smooth surfaces
     radius: float  # a [m]
     gap: float  # g [m]
     pressure: float  # P = E* g/a [Pa]
     load: float = FULL_LOAD  # in units of P a^2
     cavity: float = 0.0  # pressure of the cavity
     thinning: ShearThinning | None = None
-    viscosity: float = 1.0  # at rest [Pa s], of a liquid that thins
+    viscosity: float = 1.0  # at rest [Pa s], of a shear-thinning liquid
 
     def moving(self, couette: float) -> FlowFactors | ThinnedFactors:
-        """Return the factors at a speed, those of a thinning liquid included."""
+        """Return the factors at a speed, including those of a shear-thinning liquid."""
         if self.thinning is None:
             return self.factors
         speed = couette * self.gap**2 * self.pressure / (6 * self.viscosity * self.radius)
@@ -93,7 +93,7 @@ class PointProblem(NamedTuple):
         return _faces(self.mesh.faces.tobytes(), self.mesh.sectors)
 
     def contact(self, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Contact pressure and its derivative with respect to the film."""
+        """Return the contact pressure and its derivative with respect to the film."""
         if self.separation is None:
             return np.zeros_like(film), np.zeros_like(film)
         pressure, slope = self.separation.pressure_and_slope(film * self.gap)
@@ -107,7 +107,7 @@ class PointState(NamedTuple):
     constant: float
 
     def film(self, mesh: PolarMesh) -> np.ndarray:
-        """Film thickness in units of g."""
+        """Return the film thickness in units of g."""
         return np.asarray(self.constant + mesh.squared + mesh.kernel @ self.pressure)
 
 
@@ -119,11 +119,11 @@ class PointSolution(NamedTuple):
     film: np.ndarray
     contact: np.ndarray  # pressure carried by the solid
     fluid: np.ndarray
-    dry: np.ndarray  # which cells are the cavity
+    dry: np.ndarray  # mask of the cells in the cavity
     flux: np.ndarray  # through the faces
-    residual: float  # of the cells' balances as pressure, in units of the highest
+    residual: float  # of the cells' balances as pressure, relative to the maximum pressure
     load_balance: float
-    flux_variation: float  # of the sum over the full film, over what is entrained
+    flux_variation: float  # of the sum over the full film, relative to the entrained flux
     iterations: int
 
 
@@ -135,7 +135,7 @@ class _Balance(NamedTuple):
     flux: np.ndarray
     conductance: np.ndarray
     flux_slope: np.ndarray
-    stiff: np.ndarray  # diagonal of the pressure's part
+    stiff: np.ndarray  # diagonal of the pressure part
     dry: np.ndarray
     residual: np.ndarray
 
@@ -148,7 +148,7 @@ def couette_number(problem: PointProblem, viscosity: float, speed: float) -> flo
 def solve_point(
     problem: PointProblem, couette: float, start: PointState, first: bool = False
 ) -> PointSolution:
-    """Solve a round contact at one speed by Newton's method on pressure and constant.
+    """Return the solution of a round contact at one speed, by Newton on pressure and constant.
 
     Parameters
     ----------
@@ -159,8 +159,8 @@ def solve_point(
     start
         State to start from.
     first
-        Whether the start knows no cavity: in the very first step only cells behind the middle may
-        then be one, or the inlet closes.
+        Whether the start has no cavity: in the first step only cells behind the middle may then
+        become cavity, otherwise the inlet would close.
 
     Raises
     ------
@@ -169,8 +169,8 @@ def solve_point(
 
     Notes
     -----
-    J = couette (u + h phi_s) e_x - u^3 phi_p grad p_f, in finite volumes; p_f >= p_cav,
-    div J >= 0, one of them equal, by a primal-dual active set.
+    J = couette (u + h phi_s) e_x - u^3 phi_p grad p_f, in finite volumes; p_f >= p_cav and div J >=
+    0, complementary, by a primal-dual active set.
     """
     mesh, state, errors = problem.mesh, start, [np.inf]
     film = state.film(mesh)
@@ -223,7 +223,7 @@ def _balance(
 
 
 def _newton_step(problem: PointProblem, now: _Balance, lack: float) -> tuple[np.ndarray, float]:
-    """Newton step of pressure and constant; pressures inside the cavity stay fixed."""
+    """Return the Newton step of pressure and constant; cavity pressures are fixed."""
     mesh, faces = problem.mesh, problem.faces
     n = now.film.size
     full = (~now.dry / now.stiff)[:, None]

@@ -1,4 +1,4 @@
-"""Columns of a ball's Stribeck curve, by the full theory, by strips, or by both."""
+"""Columns of a ball's Stribeck curve, by the full theory, strips, or both."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ FULL, STRIPS = "rings and sectors", "strips"
 def ball_rows(
     system: System, force: float, speeds: np.ndarray
 ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """Columns of a curve over increasing speeds [m/s], and where strips were used.
+    """Return the columns of a curve over increasing speeds [m/s], and where strips were used.
 
     Parameters
     ----------
     system, force, speeds
-        What is to be solved.
+        Contact system, load [N] and speeds [m/s].
     """
     method: Method = system.solver.method
     strips = np.zeros(speeds.size, dtype=bool)
@@ -48,7 +48,7 @@ def _full_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[st
 
 
 def point_row(system: System, force: float, hertz: float, point: SolvedPoint) -> dict[str, float]:
-    """Values of a curve at one solved speed."""
+    """Return the values of a curve at one solved speed."""
     _, problem, solution = point
     mesh, film = problem.mesh, solution.film
     solid, whole = areas_of(problem.pressure, solution.contact, solution.fluid)
@@ -73,12 +73,12 @@ def point_row(system: System, force: float, hertz: float, point: SolvedPoint) ->
 def areas_of(
     pressure: float, contact: np.ndarray, fluid: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Contact pressure and total pressure [Pa], from which areas are computed."""
+    """Return contact pressure and total pressure [Pa], from which areas are computed."""
     return contact * pressure, (contact + fluid) * pressure
 
 
 def method_used(strips: Sequence[np.ndarray]) -> str:
-    """Name of the theory of a curve."""
+    """Return the name of the theory of a curve."""
     used = np.concatenate([np.ravel(part) for part in strips])
     if used.all():
         return STRIPS

@@ -27,7 +27,7 @@ _LEAK, _OBLIQUE = 0.88, 5 / 3  # entrainment of a strip, v' = 0.88 v cos^(5/3) t
 
 
 def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray:
-    """Mask of speeds [m/s] at which strips are valid: thin films, half-space, Newtonian."""
+    """Return a mask of speeds [m/s] with valid strips: thin films, half-space, Newtonian."""
     contact = system.contact
     if system.contact.thickness < np.inf or system.liquid.thinning or not contact.is_round:
         return np.zeros(np.shape(speed), dtype=bool)
@@ -38,13 +38,14 @@ def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray
 
 
 def strip_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[str, float]]:
-    """Values of a curve at increasing speeds [m/s], from six strips.
+    """Return the values of a curve at increasing speeds [m/s], from six strips.
 
     Notes
     -----
-    With y = a sin t a strip carries (E* a^2/R) cos^2 t per length and yields with 4 E*/pi, the
-    contact pressure and the area being those of E*; as liquid comes in obliquely, it is entrained
-    at v' = 0.88 v cos^(5/3) t: ``mu = (1/F) int dy F' [mu_fluid(F', v') v/v' + sigma_f kappa]``.
+    At y = a sin t a strip carries (E* a^2/R) cos^2 t per length and has the modulus 4 E*/pi, while
+    contact pressure and area are those of E*. Because liquid enters obliquely, the entrainment
+    speed is v' = 0.88 v cos^(5/3) t: ``mu = (1/F) int dy F' [mu_fluid(F', v') v/v' + sigma_f
+    kappa]``.
     """
     contact, solver = system.contact, system.solver
     a, stiff = float(hertz_half_width(force, contact)), contact.effective_modulus

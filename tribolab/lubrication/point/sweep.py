@@ -1,4 +1,4 @@
-"""Solution of a lubricated round contact at given speeds, from rest or from thick films."""
+"""Solution of a lubricated round contact at given speeds, starting at rest or with thick films."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from tribolab.lubrication.point.equations import (
 )
 from tribolab.lubrication.speeds import System
 
-_SHARE = 0.375  # rings over the cells of a line contact: 60 of 160
+_SHARE = 0.375  # rings relative to the cells of a line contact: 60 for 160
 _SECTORS = 24
-_USUAL, _MORE = 4.0, 0.25  # extent above which there are more rings, and how many to a decade
+_USUAL, _MORE = 4.0, 0.25  # extent for more rings, relative increase per decade
 _CLASS = 10.0  # films within this factor share a mesh
-_THICK = 5.0  # roughnesses: from there on it is started from thick films
-_LIFTED = 0.5  # gaps a^2/2R: film of the lifted start
-_GENTLE = 0.1  # pressure that the first step from rest makes, over the contact's
-_SUBSTEPS = 60  # failures on the way that are forgiven
+_THICK = 5.0  # film in roughnesses above which the solution starts from thick films
+_LIFTED = 0.5  # film of the lifted start, in gaps a^2/2R
+_GENTLE = 0.1  # fluid pressure of the first step from rest, relative to the contact pressure
+_SUBSTEPS = 60  # number of tolerated failures
 _FINEST = 1e-2  # smallest step in ln v
-SHORTEST = 1.5  # radii of the contact where the liquid may end
+SHORTEST = 1.5  # smallest radius at which the liquid may end, in contact radii
 
 
 class SolvedPoint(NamedTuple):
@@ -44,7 +44,7 @@ class SolvedPoint(NamedTuple):
 
 
 def ball_film(contact: PointContact, viscosity: float, load: float, speed: float) -> float:
-    """Central film thickness [m] of a smooth ball: the larger of the soft and the rigid limit.
+    """Return the central film thickness [m] of a smooth ball: maximum of soft and rigid limit.
 
     Notes
     -----
@@ -59,7 +59,7 @@ def ball_film(contact: PointContact, viscosity: float, load: float, speed: float
 
 
 def expected_film(contact: PointContact, liquid: Liquid, load: float, speed: float) -> float:
-    """`ball_film` [m] with the viscosity at the shear rate in that film."""
+    """Return `ball_film` [m] for the viscosity at its own shear rate."""
     film = ball_film(contact, liquid.viscosity, load, speed)
     if liquid.thinning is None or not speed:
         return film
@@ -70,12 +70,12 @@ def expected_film(contact: PointContact, liquid: Liquid, load: float, speed: flo
 
 
 def point_problem(system: System, force: float, speed: float) -> PointProblem:
-    """Choose scales and mesh at a load [N] and speed [m/s], including rest.
+    """Return scales and mesh at a load [N] and speed [m/s], including rest.
 
     Raises
     ------
     AnalysisError
-        If the liquid ends too near the contact.
+        If the liquid ends too close to the contact.
     """
     contact, liquid = _ball(system), system.liquid
     a = float(hertz_half_width(force, contact))
@@ -102,7 +102,7 @@ def point_problem(system: System, force: float, speed: float) -> PointProblem:
 
 
 def solve_points(system: System, force: float, speeds: np.ndarray) -> list[SolvedPoint]:
-    """Solve at each of increasing speeds [m/s].
+    """Return the solutions at increasing speeds [m/s].
 
     Raises
     ------
@@ -119,7 +119,7 @@ def solve_points(system: System, force: float, speeds: np.ndarray) -> list[Solve
         bool(moving) and expected_film(contact, system.liquid, force, moving[0]) > thick
     )
     if table is not None and (moving[:1] != list(speeds[:1]) or not is_lifted):
-        problem, state = _dry(system, force)
+        problem, state = _dry_start(system, force)
         try:
             dry = solve_point(problem, 0.0, state)
         except NotConvergedError as error:
@@ -127,7 +127,7 @@ def solve_points(system: System, force: float, speeds: np.ndarray) -> list[Solve
         if moving[:1] != list(speeds[:1]):
             rest = [SolvedPoint(0.0, problem, dry)]
         if moving and not is_lifted and float(dry.film.min()) * problem.gap > _closing(system):
-            first = SolvedPoint(min(_gentle(problem, dry, system), moving[0]), problem, dry)
+            first = SolvedPoint(min(_gentle_speed(problem, dry, system), moving[0]), problem, dry)
             solved, lost = _march(system, force, moving, first)
     left = moving[len(solved) :]
     if left:
@@ -141,7 +141,7 @@ def solve_points(system: System, force: float, speeds: np.ndarray) -> list[Solve
 def _from_above(
     system: System, force: float, speeds: list[float]
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
-    """Solve from a thick film, to higher and lower speeds."""
+    """Return solutions from a thick film to higher and lower speeds, and a failure if any."""
     contact = _ball(system)
     a = float(hertz_half_width(force, contact))
     wanted = max(_LIFTED * a**2 / (2 * contact.radius), _THICK * system.factors.rms_roughness)
@@ -167,7 +167,7 @@ def _from_above(
 def _march(
     system: System, force: float, speeds: Sequence[float], start: SolvedPoint
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
-    """Solve speed by speed; return the solutions, and the reason of an early end."""
+    """Return solutions speed by speed, and the reason of an early end."""
     solved: list[SolvedPoint] = []
     last, known = start, [(np.log(start.speed), start.solution.state)]
     budget, first = _SUBSTEPS, start.solution.couette == 0
@@ -209,7 +209,7 @@ def _march(
 def carried_state(
     problem: PointProblem, before: PointProblem, solution: PointSolution
 ) -> PointState:
-    """Interpolate a state to another mesh by its pressure and smallest film."""
+    """Return a state interpolated to another mesh by its pressure and smallest film."""
     mesh, old = problem.mesh, before.mesh
     rows = solution.state.pressure.reshape(-1, old.sectors)
     moved = np.stack([np.interp(mesh.radius, old.radius, row) for row in rows.T], axis=1).ravel()
@@ -221,7 +221,7 @@ def carried_state(
 def _predicted(
     problem: PointProblem, known: list[tuple[float, PointState]], state: PointState, aim: float
 ) -> PointState:
-    """Secant prediction from the last two solutions, limited to 60 % change of any film."""
+    """Return the secant prediction from two solutions, limited to 60 % change of any film."""
     if len(known) < 2 or known[-1][0] == known[-2][0]:
         return state
     (before, old), (at, new) = known[-2:]
@@ -233,8 +233,8 @@ def _predicted(
     return PointState(new.pressure + share * change[0], new.constant + share * change[1])
 
 
-def _dry(system: System, force: float) -> tuple[PointProblem, PointState]:
-    """Solve the contact at rest on the mesh, as a starting state."""
+def _dry_start(system: System, force: float) -> tuple[PointProblem, PointState]:
+    """Return the solved contact at rest on the mesh, as a starting state."""
     problem = point_problem(system, force, 0.0)
     assert system.separation is not None
     mesh = problem.mesh
@@ -244,8 +244,8 @@ def _dry(system: System, force: float) -> tuple[PointProblem, PointState]:
     return problem, PointState(np.repeat(ring, mesh.sectors), float(constant))
 
 
-def _gentle(problem: PointProblem, dry: PointSolution, system: System) -> float:
-    """Speed [m/s] at which the fluid pressure is small compared with the contact pressure."""
+def _gentle_speed(problem: PointProblem, dry: PointSolution, system: System) -> float:
+    """Return the speed [m/s] at which the fluid pressure is small compared with the contact's."""
     thinnest = float(dry.film.min())
     phi = float(problem.moving(0.0).transport(np.array([thinnest * problem.gap]))[0][0])
     number = _GENTLE * thinnest**2 * max(phi, 1e-6)
