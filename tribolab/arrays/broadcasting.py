@@ -215,7 +215,7 @@ def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, 
 
 
 def _dims(value: Any) -> tuple[Hashable, ...]:
-    """Dims of an argument; for a dataset with a spectrum, those of the spectrum."""
+    """Return the dims of an argument; for a dataset with a spectrum, those of the spectrum."""
     holder = value["psd_2d"] if "psd_2d" in getattr(value, "data_vars", ()) else value
     return tuple(getattr(holder, "dims", ()))
 

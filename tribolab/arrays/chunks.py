@@ -33,7 +33,7 @@ def pieces(
     Yields
     ------
     tuple of int
-        First sample of a piece, and that behind its last.
+        First sample of a piece, and the one after its last.
 
     Examples
     --------
@@ -61,7 +61,7 @@ def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
     Yields
     ------
     tuple of int
-        First block of a piece, and that behind its last.
+        First block of a piece, and the one after its last.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def one_by_one(parts: Iterable[_Part]) -> Iterator[_Part]:
 
 
 def anywhere(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> bool:
-    """Whether a test of single values is true for any sample; stops at the first.
+    """Return whether a test of single values is true for any sample; stops at the first.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def _all_of(values: np.ndarray) -> Iterator[tuple[int, int]]:
 
 
 def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
-    """Intervals of a record in which a condition is true.
+    """Return the intervals of a record in which a condition is true.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def lowered(values: np.ndarray, by: float) -> np.ndarray:
 
 
 def running_total(values: np.ndarray, level: float = 0.0) -> np.ndarray:
-    """Cumulative sums of the first 0, 1, 2 ... values above a level.
+    """Return the cumulative sums of the first 0, 1, 2 ... values above a level.
 
     Examples
     --------

@@ -77,7 +77,7 @@ class Conditions(Generic[Selected]):
 
 
 def labels_text(labels: Mapping[Any, object]) -> str:
-    """Labels with the names of their dims, as text.
+    """Return labels with the names of their dims, as text.
 
     Examples
     --------
@@ -88,5 +88,5 @@ def labels_text(labels: Mapping[Any, object]) -> str:
 
 
 def labels_along(holder: xr.DataArray, dim: Hashable) -> np.ndarray:
-    """Labels along a dim; numbers from 0 without labels."""
+    """Return labels along a dim; numbers from 0 without labels."""
     return holder[dim].to_numpy() if dim in holder.coords else np.arange(holder.sizes[dim])

@@ -19,7 +19,7 @@ _AROUND = (0.05, 0.3)  # initial share of the numbers on each side of a quantile
 
 
 def median(values: np.ndarray) -> np.float64:
-    """Median of all values; NaN if any is NaN, or if there are none.
+    """Return the median of all values; NaN if any is NaN, or if there are none.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def median(values: np.ndarray) -> np.float64:
 
 
 def median_of_known(values: np.ndarray) -> np.float64:
-    """Median of the values that are not NaN; NaN if there are none.
+    """Return the median of the values that are not NaN; NaN if there are none.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def median_of_known(values: np.ndarray) -> np.float64:
 
 
 def medians_of_rows(rows: np.ndarray) -> np.ndarray:
-    """Median of each row (row, column); NaN if any value in it is NaN.
+    """Return the median of each row (row, column); NaN if any value in it is NaN.
 
     Examples
     --------
@@ -58,7 +58,7 @@ def medians_of_rows(rows: np.ndarray) -> np.ndarray:
 
 
 def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.float64:
-    """Median of numbers that are computed piece by piece, ignoring NaN.
+    """Return the median of numbers that are computed piece by piece, ignoring NaN.
 
     Only values near the median of a long record are kept; the median is exact.
 
@@ -81,12 +81,12 @@ def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.f
 
 
 def quantile_in_pieces(part: Callable[[int, int], np.ndarray], count: int, share: float) -> float:
-    """Quantile of numbers computed piece by piece, as by `numpy.quantile`; NaN if none.
+    """Return the quantile of numbers computed piece by piece, as by `numpy.quantile`; NaN if none.
 
     Parameters
     ----------
     part, count
-        As of `median_in_pieces`.
+        As for `median_in_pieces`.
     share
         Share of the numbers that are not above the quantile [1].
 
@@ -142,7 +142,7 @@ def _sample_parts(part: Callable[[int, int], np.ndarray], count: int) -> np.ndar
 def _near(
     part: Callable[[int, int], np.ndarray], count: int, bracket: tuple[float, float], share: float
 ) -> _About | None:
-    """Numbers around a quantile, from those in a bracket; None if it is elsewhere."""
+    """Return the numbers around a quantile, from a bracket; None if it is outside."""
     low, high = bracket
     below, known = 0, 0
     kept = [np.zeros(0)]
@@ -175,7 +175,7 @@ def _median_of_sorted(numbers: np.ndarray) -> np.float64:
 
 
 def _middle(ordered: np.ndarray) -> np.float64:
-    """Median of sorted numbers, at least one."""
+    """Return the median of sorted numbers, at least one."""
     half = ordered.size // 2
     if ordered.size % 2:
         return ordered[half]

@@ -52,7 +52,7 @@ def room(
 
 
 def is_long(count: int) -> bool:
-    """Whether an array of so many samples belongs in a scratch file."""
+    """Return whether an array of so many samples belongs in a scratch file."""
     return count >= LONG
 
 

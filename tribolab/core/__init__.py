@@ -1,1 +1,1 @@
-"""Basic tools that all rooms use."""
+"""Basic tools for all subpackages."""

@@ -37,7 +37,7 @@ class Cure:
 class TribolabError(Exception):
     """Base of all errors that tribolab raises intentionally.
 
-    It contains the parts of a message; `told("terminal")` words it for an audience. As text it is
+    It contains the parts of a message; `told("terminal")` words it for an audience. Its text is
     worded for a notebook. Control characters for terminals are removed.
 
     Parameters
@@ -123,7 +123,7 @@ class OutputError(TribolabError):
 
 
 def told(error: BaseException, audience: str) -> str:
-    """Message of an error worded for one audience; errors of other libraries are shortened.
+    """Return the message of an error for one audience; messages of other libraries are shortened.
 
     >>> told(ReadError("empty", where="a.csv"), "terminal"), told(ValueError("no"), "campaign")
     ('a.csv: empty', 'no')
@@ -132,7 +132,7 @@ def told(error: BaseException, audience: str) -> str:
 
 
 def harmless(text: str) -> str:
-    r"""Text without characters that control a terminal, except line ends.
+    r"""Return a text without characters that control a terminal, except line ends.
 
     >>> harmless("\x1b[31mred\tline\nnext")
     '?[31mred line\nnext'
@@ -143,7 +143,7 @@ def harmless(text: str) -> str:
 
 
 def brief(error: BaseException, most: int = 300) -> str:
-    r"""Message of another library's error, shortened to one line.
+    r"""Return the message of another library's error, shortened to one line.
 
     >>> brief(ValueError("bad tag\n in \x00 the file"))
     'bad tag in the file'
@@ -156,7 +156,7 @@ def brief(error: BaseException, most: int = 300) -> str:
 
 
 def shown(value: object, most: int = 80) -> str:
-    r"""Short text of a value for a message, without characters that control a terminal.
+    r"""Return a short text of a value for a message, without characters that control a terminal.
 
     >>> shown("\x1b[31mred\n"), shown("x" * 1000, 5)
     ('?[31mred?', 'xxxxx ...')
@@ -174,7 +174,7 @@ _LISTED = 20
 
 
 def nearest(word: str, known: Iterable[str], most: int | None = _LISTED) -> str:
-    """Hint naming the known words nearest to `word`, for the end of an error message.
+    """Return a hint with the known words nearest to `word`, for the end of an error message.
 
     If none is near, it lists the known words: at most `most`, None for all.
 

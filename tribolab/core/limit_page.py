@@ -1,4 +1,4 @@
-"""The limits of all rooms as a page to read: raw_data_schema/LIMITS.md."""
+"""Page raw_data_schema/LIMITS.md with the limits of all subpackages."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ def sha256_of_file(path: str | Path) -> str:
 
 
 def sha256_of(value: Any) -> str:
-    """SHA-256 of any JSON value, independent of the order of keys."""
+    """Return the SHA-256 of any JSON value, independent of the order of keys."""
     text = json.dumps(value, sort_keys=True, default=str, ensure_ascii=False)
     return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()
 
@@ -58,8 +58,8 @@ def escape_controls(text: str) -> str:
 
 
 def history_line(action: str) -> str:
-    """Line for the ``history`` attribute: time in UTC, version, action."""
-    # late: it looks up the installed package
+    """Return a line for the ``history`` attribute: time in UTC, version, action."""
+    # imported late: the installed package is looked up
     from tribolab.version import __version__
 
     now = dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
@@ -80,8 +80,8 @@ def made(
     action
         Action in a few words, for the history line.
     source, source_sha256
-        Names of the raw files and their checksums, each joined by ``"; "``. What was computed
-        from published constants has their citation as its source, and no file, so no checksum.
+        Names of the raw files and their checksums, each joined by ``"; "``. Products of published
+        constants have a citation as source, without a checksum.
     config_sha256
         Checksum of the settings that affect the product.
 
@@ -90,7 +90,7 @@ def made(
     >>> sorted(made("contact of the reference system", source="Xu et al. (2026)"))
     ['Conventions', 'history', 'source', 'tribolab_version']
     """
-    # late: it looks up the installed package
+    # imported late: the installed package is looked up
     from tribolab.version import __version__
 
     attrs = {
@@ -131,7 +131,7 @@ def join_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
 
 
 def provenance(sources: Iterable[str | Path], action: str) -> dict[str, str]:
-    """Provenance attributes of a product made from raw files.
+    """Return the provenance attributes of a product made from raw files.
 
     Parameters
     ----------

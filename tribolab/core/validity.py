@@ -34,7 +34,7 @@ class ValidityLimit:
     because
         The assumption of the theory that fails.
     cure
-        What to do.
+        Remedy.
     """
 
     what: str
@@ -47,7 +47,7 @@ class ValidityLimit:
 LIMITS = {
     "film": ValidityLimit(
         "film thickness over the radius R",
-        # a cylinder's gap is 0.5 % wider than the parabola's where the film is twice as thick,
+        # the gap of a cylinder exceeds the parabola's by 0.5 % where the film is twice as thick,
         1e-2,
         # 6 % at R/10 and twice as wide at R/2, where its own edge is reached, sqrt(2 R h) = R
         0.5,

@@ -18,7 +18,7 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Return the number with so many significant digits, without needless zeros or exponents.
+    """Return a number with the given significant digits, without needless zeros or exponents.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def aligned(value: float, digits: int = 3) -> str:
-    """Return a number with so many significant digits and trailing zeros, for columns.
+    """Return a number with the given significant digits and trailing zeros, for columns.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def aligned(value: float, digits: int = 3) -> str:
 
 
 def speed_text(speed: float) -> str:
-    """Text of a sliding speed [m/s] with a suitable prefix.
+    """Return a sliding speed [m/s] as text with a suitable prefix.
 
     A speed just below 1 um/s is given in um/s, since its set-point was 1 um/s.
 
@@ -68,7 +68,7 @@ def speed_text(speed: float) -> str:
 
 
 def force_text(force: float | None) -> str:
-    """Force [N] as text, e.g. ``"31 N"``; None is an unknown force."""
+    """Return a force [N] as text, e.g. ``"31 N"``; None is an unknown force."""
     if force is None or not math.isfinite(force):
         return "load unknown"
     return f"{number(force)} N"
@@ -100,7 +100,7 @@ def load_text(load: float | None, load_from: str) -> str:
 
 
 def span(values: Iterable[float | None], unit: str = "") -> str:
-    """Smallest to largest as text; one number if they look the same.
+    """Return a range as text, or one number if both ends look the same.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def span(values: Iterable[float | None], unit: str = "") -> str:
 
 
 def speeds(values: Iterable[float | None]) -> str:
-    """Range of sliding speeds as text.
+    """Return a range of sliding speeds as text.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def speeds(values: Iterable[float | None]) -> str:
 
 
 def duration(seconds: float | None) -> str:
-    """Duration as text in a suitable unit.
+    """Return a duration as text in a suitable unit.
 
     Examples
     --------
@@ -146,7 +146,7 @@ def duration(seconds: float | None) -> str:
 
 
 def percent(share: float | None) -> str:
-    """Share as text, e.g. ``"2.1 %"``."""
+    """Return a share as text, e.g. ``"2.1 %"``."""
     if share is None or not math.isfinite(share):
         return "–"
     return f"{number(100 * share, 2)} %"
@@ -190,10 +190,9 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def explain(error: BaseException) -> tuple[str, str]:
-    """One line with the message of an error and its class name.
+    """Return one line with the message of an error, and its class name.
 
-    It is worded for the records of a campaign.
-    Unexpected errors also state where they happened.
+    The message is worded for the records of a campaign; unexpected errors include their place.
     """
     name = type(error).__name__
     if isinstance(error, TribolabError):
@@ -215,7 +214,7 @@ _DRY = {"dry", "none", "air"}
 
 
 def is_dry(medium: str) -> bool:
-    """Whether the name of a medium means that there is no fluid.
+    """Return whether the name of a medium means that there is no fluid.
 
     Examples
     --------

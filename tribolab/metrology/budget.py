@@ -17,7 +17,7 @@ from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 from tribolab.reading.dialect.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 
-# name of the part that a curve's own scatter makes
+# columns of the curve's own scatter
 _OWN = ("friction_coefficient_u", "friction_coefficient_dof")
 StatedUncertainties = Mapping[str, StatedUncertainty | Mapping[str, Any]]
 
@@ -28,7 +28,7 @@ def uncertainty_budget(
     *,
     speed_tolerance: float = 0.1,
 ) -> UncertaintyBudget:
-    """Uncertainty budget of friction coefficients: standard uncertainty, its parts, U95.
+    """Return the uncertainty budget of friction coefficients: standard uncertainty, its parts, U95.
 
     Parameters
     ----------
@@ -95,14 +95,14 @@ def known_uncertainties(
     Parameters
     ----------
     friction
-        Its attribute ``uncertainty`` has those of the run's instrument and campaign.
+        Result with the attribute ``uncertainty``: inputs from the run's instrument and campaign.
     stated
         As for `uncertainty_budget`.
 
     Raises
     ------
     AnalysisError
-        If a name is not known, or what is stated of it is not right.
+        If a name is not known, or its statement is invalid.
     """
     own = friction.attrs.get("uncertainty", {})
     known = {name: Known(**entry) for name, entry in own.items() if name in NAMES}
@@ -127,7 +127,7 @@ def known_uncertainties(
 
 
 def segment_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dataset:
-    """Friction result with the uncertainty of each segment and its parts.
+    """Return the friction result with the uncertainty of each segment and its parts.
 
     Parameters
     ----------

@@ -44,25 +44,25 @@ class _Part(NamedTuple):
 def curve_uncertainty(
     curve: xr.Dataset, frictions: Sequence[xr.Dataset], known: Sequence[Mapping[str, Known]]
 ) -> CurveUncertainty:
-    """Measured curve with the uncertainty of each point and its parts.
+    """Return the measured curve with the uncertainty of each point and its parts.
 
     Parameters
     ----------
     curve
         From `tribolab.measured_stribeck_curve` of these runs (sliding_speed).
     frictions
-        Results of `tribolab.friction_coefficient`. The attribute ``mount``, where all of them
-        have one, distinguishes mounts of the sample; the attribute ``instrument``, instruments.
+        Results of `tribolab.friction_coefficient`. The attribute ``mount``, if all of them have
+        one, distinguishes mounts of the sample; the attribute ``instrument``, instruments.
     known
         Standard uncertainties by name, of each run.
 
     Notes
     -----
-    What all runs of an instrument share is averaged with its sign and added; what instruments have
-    is independent. What varies with the run is in the spread between runs as soon as there are two
-    of them, what varies with the mount as soon as two mounts are named, what varies with the stroke
-    as soon as a point has two observations, and a calibration where every run of a point is of
-    another instrument: it is not added again.
+    Errors shared by all runs of an instrument are averaged with their sign and added; errors of
+    different instruments are independent. An error that the scatter already includes is not added
+    again: errors that vary with the run are included with two runs or more, with the mount from two
+    named mounts on, with the stroke if a point has two observations, and calibrations if every run
+    of a point is from another instrument.
     """
     points = np.log(curve["sliding_speed"].values)
     size = points.size
@@ -102,7 +102,7 @@ def curve_uncertainty(
 
 
 def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[ScatterPart]:
-    """Noise of points with one run, and spread between runs of the others."""
+    """Return the noise of points with one run, and the scatter between runs of the others."""
     u, dof = (curve[f"friction_coefficient_{end}"].values for end in ("u", "dof"))
     several = runs > 1
     scatter = [ScatterPart(np.where(several, 0.0, u), dof, NOISE)] if not several.all() else []
@@ -147,7 +147,7 @@ def _mounts(frictions: Sequence[xr.Dataset]) -> int:
 
 
 def shared_parts(curve: xr.Dataset) -> Iterator[tuple[str, np.ndarray]]:
-    """Parts of the uncertainty that the points of a curve share, by name (sliding_speed).
+    """Yield the parts of the uncertainty shared by the points of a curve (sliding_speed), by name.
 
     Parameters
     ----------

@@ -15,10 +15,10 @@ from tribolab.units.stamping import stamp
 NOISE, BETWEEN = "noise and known zero of the run", "between runs"
 _NOT_STATED = "calibration not stated: statistical only"
 _RECTANGULAR = ("half-width", "step")
-# Few repeats that agree by chance would count as well known. If a scatter has fewer degrees
-# of freedom than _FEW, its share x of Welch's and Satterthwaite's sum grows to 1 - (1 - x)^(1 +
-# _CHANCE/nu^2): U95 of two runs plus a calibration then covers 93.4 to 96.4 % for any ratio
-# of the two (87 to 95 % without), of three runs 95 to 95.8 %. For two runs no rule is within 1 %
+# A scatter of few repeats may be small by chance. Below _FEW degrees of freedom its share x in the
+# Welch-Satterthwaite sum is increased to 1 - (1 - x)^(1 + _CHANCE/nu^2): the coverage of U95 for
+# two runs plus a calibration is then 93.4 to 96.4 % for any ratio of the two (87 to 95 % without),
+# for three runs 95 to 95.8 %. For two runs no rule is within 1 %
 _FEW, _CHANCE = 4.0, 10.0
 _DOMINATES = 0.7  # share of the variance above which one rectangular part shapes the distribution
 
@@ -40,7 +40,7 @@ class ScatterPart(NamedTuple):
 
 
 def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.ndarray:
-    """Effective degrees of freedom of a combined uncertainty (Welch-Satterthwaite).
+    """Return the effective degrees of freedom of a combined uncertainty (Welch-Satterthwaite).
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.n
     Notes
     -----
     ``1/sum(x_i/nu_i)`` with ``x_i = (u_i/u)^4`` and u^2 the sum of the u_i^2 (JCGM 100:2008, Eq.
-    (G.2b)). Seen scatter of few degrees of freedom: ``1 - (1 - x_i)^(1 + 10/nu_i^2)`` for x_i,
-    chosen for equal coverage at every ratio of a scatter to the other parts.
+    (G.2b)). For observed scatter of few degrees of freedom x_i is replaced by ``1 - (1 - x_i)^(1 +
+    10/nu_i^2)``, chosen for equal coverage at every ratio of scatter to other parts.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.n
 
 
 def coverage_factor(dof: np.ndarray | float) -> np.ndarray:
-    """Student's t_0.975 for given degrees of freedom.
+    """Return Student's t_0.975 for given degrees of freedom.
 
     Examples
     --------
@@ -125,8 +125,7 @@ def combine_parts(
     stated = [known[name].dof if name in known else np.inf for name in parts]
     freedom += [np.full(size, dof) for dof in stated]
     dof = np.array(freedom, float).reshape(shape)
-    # an input that cannot be evaluated is left out; an unknown scatter makes the whole
-    # unknown
+    # an input that cannot be evaluated is left out; with unknown scatter the total is unknown
     inputs = zip(parts, values[len(scatter) :], strict=True)
     missing = [name for name, row in inputs if size and np.isnan(row).all()]
     counted = np.where([[n in missing] for n in names], 0.0, values)

@@ -109,7 +109,7 @@ class UncertaintyBudget:
         return int(fine[np.argsort(relative[fine], kind="stable")[(fine.size - 1) // 2]])
 
     def _repr_html_(self) -> str:
-        """HTML of a typical value with its uncertainty, what that excludes, and the table."""
+        """Return HTML of a typical value with its uncertainty, omissions, and the table."""
         table = self.table()
         mu, wide = table.attrs["friction_coefficient"], table.attrs["U95"]
         says = f"<br>{self.says}" if self.says else ""

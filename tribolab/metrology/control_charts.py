@@ -42,11 +42,11 @@ class Baseline:
     points
         Number of points; infinite if centre and deviation are known exactly.
     degrees_of_freedom
-        Of the standard deviation.
+        Degrees of freedom of the standard deviation.
     correlation
-        Of neighbouring points.
+        Correlation of neighbouring points.
     correlated
-        Whether that is significant.
+        Whether the correlation is significant.
     """
 
     centre: float
@@ -69,12 +69,12 @@ class Baseline:
 
 
 def baseline_of(values: ArrayLike) -> Baseline:
-    """Centre and standard deviation of the baseline points.
+    """Return the centre and standard deviation of the baseline points.
 
     Parameters
     ----------
     values
-        (point), in order of time, five or more.
+        (point), in temporal order, five or more.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def control_chart(
     Parameters
     ----------
     values
-        (point), in order of time.
+        (point), in temporal order.
     baseline
         From `baseline_of`, or known.
     rules
@@ -167,12 +167,11 @@ def control_chart(
 
     Notes
     -----
-    A single point signals beyond 3 sigma [1]_; of an estimated sigma it is the t of the same
-    chance, with the error of the centre, s t sqrt(1 + 1/m). The EWMA is
-    z_i = 0.2 x_i + 0.8 z_(i-1) with limits of 2.86 of its own deviations, which start narrow [2]_.
-    The two CUSUMs sum up what exceeds half a sigma and signal above 4.77. The Western Electric
-    rules: one point beyond 3 sigma, two of three beyond 2, four of five beyond 1, eight on one
-    side.
+    A single point signals beyond 3 sigma [1]_; for an estimated sigma beyond the t of equal
+    probability including the error of the centre, s t sqrt(1 + 1/m). The EWMA is z_i = 0.2 x_i +
+    0.8 z_(i-1) with limits of 2.86 of its own standard deviations, which are narrow at first [2]_.
+    The two CUSUMs add excesses over half a sigma and signal above 4.77. The Western Electric rules:
+    one point beyond 3 sigma, two of three beyond 2, four of five beyond 1, eight on one side.
 
     References
     ----------
@@ -206,7 +205,7 @@ def control_chart(
 
 
 def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dict[str, Signalled]:
-    """Masks of the points that signal, by rule.
+    """Return masks of the points that signal, by rule.
 
     Parameters
     ----------
@@ -233,7 +232,7 @@ def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dic
 
 
 def _smooth(standard: Array, centre_error: float) -> tuple[Array, Array]:
-    """Exponentially weighted means (series, point), and their standard deviation (point)."""
+    """Return exponentially weighted means (series, point), and their standard deviation (point)."""
     z = np.empty_like(standard)
     last = np.zeros(standard.shape[0])
     for place in range(standard.shape[1]):
@@ -246,7 +245,7 @@ def _smooth(standard: Array, centre_error: float) -> tuple[Array, Array]:
 
 
 def cusums(standard: Array, slack: float = _CUSUM_SLACK) -> tuple[Array, Array]:
-    """Upper and lower cumulative sum (series, point)."""
+    """Return the upper and lower cumulative sum (series, point)."""
     up, down = np.empty_like(standard), np.empty_like(standard)
     high, low = np.zeros(standard.shape[0]), np.zeros(standard.shape[0])
     for place in range(standard.shape[1]):

@@ -37,7 +37,7 @@ class DeadWeightGain(NamedTuple):
 def dead_weight_gain(
     run: xr.Dataset, weight: str | float, signal: str = "normal_force"
 ) -> DeadWeightGain:
-    """Gain of a force channel from a record in which a dead weight is placed or removed.
+    """Return the gain of a force channel from a record in which a dead weight is placed or removed.
 
     Parameters
     ----------
@@ -59,10 +59,10 @@ def dead_weight_gain(
 
     Notes
     -----
-    A sample belongs to the level that it is nearer to. Each part between two changes, a tenth left
-    out at both ends, has its mean; with and without the weight the means of the parts are averaged,
-    and their difference over the weight is the gain. Its error is the larger of what the noise
-    makes, with its memory, and of what the parts scatter.
+    A sample belongs to the nearer level. Intervals between two changes are averaged without a tenth
+    at each end, then all intervals with and without the weight. The difference over the weight is
+    the gain. Its error is the larger of that from (correlated) noise and that from the scatter of
+    intervals.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def dead_weight_gain(
 
 
 def _level(parts: list[tuple[float, float]]) -> tuple[float, float]:
-    """Mean of some intervals and its standard error."""
+    """Return the mean of some intervals and its standard error."""
     means, errors = np.array(parts).T
     count = means.size
     by_noise = float(np.sqrt(np.sum(errors**2))) / count

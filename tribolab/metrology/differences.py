@@ -33,9 +33,9 @@ class Differences:
     first, second
         Means of the groups (point).
     difference, standard_error, degrees_of_freedom
-        Of the difference, by Welch's test (point).
+        Difference, its standard error and degrees of freedom by Welch's test (point).
     p_value
-        Of each point alone, two-sided (point).
+        Two-sided p value of each point alone (point).
     adjusted_p_value
         Probability that any of the points shows such a difference by chance (point).
     factor
@@ -95,22 +95,21 @@ def differences_of_groups(
     Parameters
     ----------
     groups
-        For each condition the values of the runs of both groups, (run, point) each; NaN where a
-        run has none. The points of all conditions are one family.
+        For each condition the values of the runs of both groups, (run, point) each; NaN for missing
+        values. The points of all conditions are one family.
     not_in_scatter
         For each condition, errors that the scatter of the runs does not include, e.g. of gains
         that the groups do not share: signed standard uncertainties, fully correlated between
         points (term, point).
     alpha
-        Probability that any point is called different although none is.
+        Probability of a false difference at any point.
     seed
         Seed of the permutations drawn if there are too many to use all.
 
     Returns
     -------
     Differences
-        Over the points of all conditions, one after the other. NaN where a group has fewer than
-        two runs.
+        Over the points of all conditions in sequence. NaN if a group has fewer than two runs.
 
     Raises
     ------
@@ -119,14 +118,13 @@ def differences_of_groups(
 
     Notes
     -----
-    At each point Welch's t [1]_. The points of a condition are taken together by permutations of
-    its runs (`permutation_test`) where there are four or more in each group, and enough
-    permutations for so many conditions; else by rotations (`rotation_test`), which suppose that
-    runs are normally distributed. Where runs that are too few to be permuted lack points,
-    Bonferroni's rule takes Student's distribution. Conditions are independent of each other, and
-    Sidak's rule takes their number into account. P values and intervals come from the same draws,
-    so that an interval leaves out zero where the adjusted p is at most alpha. No adjusted p is
-    below that of the point alone, and no interval narrower.
+    At each point Welch's t [1]_. The points of a condition are tested jointly by permutations of
+    its runs (`permutation_test`) if each group has four or more, and there are enough permutations
+    for the number of conditions; else by rotations (`rotation_test`), which assume normally
+    distributed runs. If runs too few for permutations lack points, Bonferroni's rule is used with
+    Student's distribution. Conditions are independent; Sidak's rule corrects for their number. P
+    values and intervals are from the same draws, so that an interval excludes zero if the adjusted
+    p is at most alpha. No adjusted p is below that of the point alone, and no interval is narrower.
 
     References
     ----------
@@ -151,7 +149,7 @@ def differences_of_groups(
     ]
     level = 1 - (1 - alpha) ** (1 / len(groups))
     told = [
-        _together(*pair, own, at, level, seed)
+        _adjust_jointly(*pair, own, at, level, seed)
         for pair, own, at in zip(groups, terms, points, strict=True)
     ]
     alone = [at.p_value for at in points]
@@ -193,7 +191,7 @@ def _points(first: Array, second: Array, terms: Array) -> _Points:
     return _Points(mean_a, mean_b, mean_b - mean_a, error, freedom, np.asarray(p_value))
 
 
-def _together(
+def _adjust_jointly(
     first: Array, second: Array, terms: Array, at: _Points, level: float, seed: int
 ) -> tuple[Array, Array, str]:
     """Return the adjusted p values of a condition's points, factor of the intervals, and method."""
@@ -215,7 +213,7 @@ def _together(
 
 
 def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -> list[str]:
-    """Verdict for each point: different, equivalent within a margin, or undecided.
+    """Return the verdict for each point: different, equivalent within a margin, or undecided.
 
     Parameters
     ----------
@@ -224,14 +222,14 @@ def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -
     margin
         Largest irrelevant difference (point); None if not stated: then no point is equivalent.
     alpha
-        Of the test whether each point alone is equivalent, since the two curves are equivalent only
-        if all their points are.
+        Level of the equivalence test of each single point: two curves are equivalent only if all
+        points are.
 
     Notes
     -----
-    Two differ where `Differences.differs`. Equivalent is what two one-sided tests say: the interval
-    of level 1 - 2 alpha lies within the margin (Schuirmann 1987, doi:10.1007/BF01068419). It comes
-    first: a difference may be sure and yet too small to matter.
+    Different: `Differences.differs`. Equivalent, by two one-sided tests: the interval of level 1 -
+    2 alpha is within the margin (Schuirmann 1987, doi:10.1007/BF01068419). Equivalence has
+    priority: a significant difference may be too small to be relevant.
     """
     low, high = compared.interval(1 - 2 * alpha)
     words = []
@@ -242,7 +240,7 @@ def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -
 
 
 def _welch(first: Array, second: Array) -> tuple[Array, Array, Array, Array]:
-    """Means of both groups, squared standard error of their difference, degrees of freedom."""
+    """Return means of both groups, squared error of their difference, degrees of freedom."""
     count_a, mean_a, square_a = _mean_and_error(first)
     count_b, mean_b, square_b = _mean_and_error(second)
     total = square_a + square_b
@@ -265,6 +263,6 @@ def _mean_and_error(values: Array) -> tuple[Array, Array, Array]:
 
 
 def _ratio(difference: Array, error: Array) -> Array:
-    """Difference over its error; 0 for values that are equal except for rounding."""
+    """Return difference over error; 0 for values that are equal except for rounding."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(difference == 0, np.where(np.isnan(error), np.nan, 0.0), difference / error)

@@ -25,7 +25,7 @@ class GaugeStudy:
     repeatability, appraisers, interaction, parts
         Variances: of trials, between appraisers, of appraisers with parts, between parts.
     interaction_p_value
-        Of the F test of the interaction.
+        p value of the F test of the interaction.
     pooled
         Whether the insignificant interaction was pooled with the repeatability.
     """
@@ -59,7 +59,7 @@ class GaugeStudy:
 
 
 def gauge_study(values: ArrayLike) -> GaugeStudy:
-    """Variance components of a balanced crossed study by analysis of variance.
+    """Return the variance components of a balanced crossed study by analysis of variance.
 
     Parameters
     ----------
@@ -70,12 +70,12 @@ def gauge_study(values: ArrayLike) -> GaugeStudy:
     Raises
     ------
     AnalysisError
-        If the values are not of that shape, or some are missing.
+        If the values do not have that shape, or some are missing.
 
     Notes
     -----
-    The interaction is pooled with the repeatability where its F test gives p > 0.25. Components
-    that come out negative are zero.
+    The interaction is pooled with the repeatability if its F test gives p > 0.25. Negative
+    components are set to zero.
 
     References
     ----------
@@ -148,8 +148,8 @@ def average_and_range(values: ArrayLike) -> RangeStudy:
 
     Notes
     -----
-    A mean range divided by the expected range of as many normal values, d2; for the single range of
-    appraisers and that of parts by d2* of one sample, the root of d2^2 + d3^2 (Duncan 1986).
+    A mean range divided by the expected range of as many normal values, d2; the single ranges of
+    appraisers and of parts are divided by d2* of one sample, the root of d2^2 + d3^2 (Duncan 1986).
     """
     y = _check_balance(values)
     parts, appraisers, trials = y.shape
@@ -177,12 +177,12 @@ def _single_range(size: int) -> float:
 
 
 def _range_of_normal(size: int) -> tuple[float, float]:
-    """Mean d2 and standard deviation d3 of the range of standard normal values."""
+    """Return the mean d2 and standard deviation d3 of the range of standard normal values."""
     low = np.linspace(-8.5, 8.5, 1201)
     step = low[1] - low[0]
     cdf, pdf = special.ndtr(low), np.exp(-(low**2) / 2) / np.sqrt(2 * np.pi)
     mean = float((1 - (1 - cdf) ** size - cdf**size).sum() * step)
-    # of the smallest at low and the largest above
+    # joint density of the smallest value and the largest one
     span = np.maximum(cdf[None, :] - cdf[:, None], 0.0)
     joint = size * (size - 1) * span ** (size - 2) * pdf[:, None] * pdf[None, :]
     joint *= np.triu(np.ones_like(span), 1)

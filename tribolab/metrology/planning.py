@@ -36,7 +36,7 @@ class Pilot:
 
 
 def run_variance(pilot: Pilot, sliding_time: float) -> float:
-    """Variance of the mean of one run of a given sliding time [s].
+    """Return the variance of the mean of one run of a given sliding time [s].
 
     Notes
     -----
@@ -67,26 +67,25 @@ def runs_for_standard_error(
     Parameters
     ----------
     variance
-        Of the mean of one run, from `run_variance`.
+        Variance of the mean of one run, from `run_variance`.
     standard_error
-        Wanted.
+        Required standard error.
     assurance
-        Probability that the estimated error is no larger than wanted; 50 % if not given.
+        Probability that the estimated error is at most the required one; 50 % if not given.
     pilot_runs
         Number of runs from which the variance was estimated; None if it is known.
 
     Returns
     -------
     int or None
-        Two or more; None if a thousand are too few.
+        Two or more; None if a thousand runs are too few.
 
     Notes
     -----
-    n = v/u^2; with assurance v times chi^2_q(n - 1)/(n - 1), the variance that will be found with
-    that chance, or times F_q(n - 1, m - 1) where m runs of a pilot told v. Without assurance q is
-    a half where there was a pilot: few runs more often find too small a variance than too large
-    a one (of three the median is 0.69 of what it should be), and a plan that takes theirs as it is
-    falls short.
+    n = v/u^2. With assurance q, v is multiplied by chi^2_q(n - 1)/(n - 1), the quantile of the
+    estimated variance, or by F_q(n - 1, m - 1) if v is from m pilot runs. With a pilot and without
+    assurance q is a half: the variance of few runs is more often too small than too large (the
+    median for three is 0.69 of the true value), so that a plan with it would be insufficient.
 
     Examples
     --------
@@ -117,7 +116,7 @@ def runs_for_half_interval(
 
 @functools.lru_cache(maxsize=64)
 def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float64]:
-    """Ratio of the variance not exceeded with the given probability to the known variance."""
+    """Return the ratio of the variance not exceeded with the given probability to the true one."""
     if pilot_runs is not None:
         chance = 0.5 if assurance is None else assurance
         return np.asarray(special.fdtri(_RUNS - 1, pilot_runs - 1, chance))
@@ -127,7 +126,7 @@ def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float6
 
 
 def _first(reached: NDArray[np.float64], wanted: float) -> int | None:
-    """Smallest number of runs that meets a condition."""
+    """Return the smallest number of runs that meets a condition."""
     enough = np.flatnonzero(reached <= wanted * (1 + 1e-12))
     return int(_RUNS[enough[0]]) if enough.size else None
 
@@ -146,7 +145,8 @@ def cheapest_sliding_time(pilot: Pilot, setup_time: float, longest: float) -> fl
 
     Notes
     -----
-    Least of (t_s + T) v(T); for T much longer than the memory that is sqrt(t_s 2 tau s^2 / s_b^2).
+    Least of (t_s + T) v(T); for T much longer than the correlation time this is sqrt(t_s 2 tau s^2
+    / s_b^2).
 
     Examples
     --------

@@ -26,7 +26,7 @@ def reproducibility_deviation(repeatability: float, between: ArrayLike) -> float
 
 
 def mandel(means: ArrayLike, deviations: ArrayLike) -> tuple[Array, Array]:
-    """Mandel's h and k of each laboratory, mount or day.
+    """Return Mandel's h and k of each laboratory, mount or day.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def mandel(means: ArrayLike, deviations: ArrayLike) -> tuple[Array, Array]:
     Returns
     -------
     tuple of numpy.ndarray
-        h, how far each mean is from the mean of all in standard deviations of these means; k, each
+        h: deviation of each mean from the overall mean in standard deviations of the means; k: each
         standard deviation relative to the pooled one.
 
     Examples
@@ -54,7 +54,7 @@ def mandel(means: ArrayLike, deviations: ArrayLike) -> tuple[Array, Array]:
 
 
 def mandel_limits(laboratories: int, results: int, level: float = 0.01) -> tuple[float, float]:
-    """Critical values of Mandel's h (either sign) and k at a significance level.
+    """Return the critical values of Mandel's h (either sign) and k at a significance level.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def mandel_limits(laboratories: int, results: int, level: float = 0.01) -> tuple
     results
         Number of results of each, two or more.
     level
-        Of significance: ISO 5725-2 marks 5 % and 1 %.
+        Significance level: ISO 5725-2 uses 5 % and 1 %.
 
     Examples
     --------

@@ -39,7 +39,7 @@ def recalibration_due(
     values: ArrayLike = (),
     limit: float | None = None,
 ) -> Due:
-    """Date of the next calibration, from its interval and from observed drift.
+    """Return the date of the next calibration, from its interval and from observed drift.
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ def recalibration_due(
 
     Notes
     -----
-    A line through the points; due where the one-sided 95 % prediction bound of a further point
-    reaches the limit, if that is before the interval ends.
+    A line is fitted to the points; the calibration is due when the one-sided 95 % prediction bound
+    of a further point reaches the limit, if that is before the end of the interval.
 
     Examples
     --------

@@ -31,18 +31,17 @@ class Components:
 def variance_components(
     values: ArrayLike, factors: Sequence[ArrayLike], fixed: ArrayLike | None = None
 ) -> Components:
-    """Variance components of values with several random factors.
+    """Return the variance components of values with several random factors.
 
     Parameters
     ----------
     values
         (observation)
     factors
-        Of each factor the level that each observation belongs to (observation); a factor that is
-        nested in another has levels of its own in each of the other's.
+        Level of each observation, for each factor (observation); a factor nested in another has
+        distinct levels in each level of the other.
     fixed
-        Groups with means of their own (observation), e.g. conditions; without them there is one
-        mean.
+        Groups with separate means (observation), e.g. conditions; by default there is one mean.
 
     Raises
     ------
@@ -52,8 +51,8 @@ def variance_components(
     Notes
     -----
     With V = 1 + sum of gamma_j Z_j Z_j', the restricted likelihood is maximised over the ratios of
-    variances gamma_j >= 0, dense; the residual variance and the means follow from them [1]_. Of
-    balanced data this is the analysis of variance, where no component of that is negative.
+    variances gamma_j >= 0, dense; the residual variance and the means follow from them [1]_. For
+    balanced data this is the analysis of variance, if none of its components is negative.
 
     References
     ----------
@@ -105,7 +104,7 @@ def _indicators(levels: ArrayLike) -> Array:
 
 
 def _solve(y: Array, x: Array, parts: Sequence[Array], ratios: Array) -> tuple[float, float, Array]:
-    """Loss (minus the restricted log-likelihood), residual variance and means at given ratios."""
+    """Return loss (minus the restricted log-likelihood), residual variance and means at ratios."""
     covariance = np.eye(y.size)
     for ratio, part in zip(ratios, parts, strict=True):
         covariance += ratio * part

@@ -12,17 +12,17 @@ from scipy import special
 
 from tribolab.core.aliases import Array
 
-_MIN_RUNS = 4  # runs in each group above which they are permuted
+_MIN_RUNS = 4  # smallest number of runs per group for permutations
 MOST_ROTATED = 40  # largest number of runs of both groups together
 _DRAWS, _FEW_DRAWS = 4999, 1999
-_FEW_WILL_DO = 0.005  # significance level
+_FEW_WILL_DO = 0.005  # significance level from which fewer draws suffice
 _EXHAUSTIVE = 5000
 _REACHED = 0.8  # times the wanted level; permutations must resolve it
 _SAME = 1e-9  # relative: rounding must not distinguish a draw from the data
 
 
 def permutations_will_do(first: int, second: int, level: float) -> bool:
-    """Whether the runs allow enough permutations for a significance level.
+    """Return whether the runs allow enough permutations for a significance level.
 
     Four and four runs have 70 permutations, equal in pairs: possible levels are multiples of 2/70,
     and the one below 5 % is 2.9 %.
@@ -46,24 +46,24 @@ def permutation_test(
     Parameters
     ----------
     first, second
-        Values of the runs of both groups (run, point); NaN where a run has none.
+        Values of the runs of both groups (run, point); NaN for missing values.
     terms
         Errors not in the scatter of the runs: signed standard uncertainties, each fully
         correlated between points (term, point).
     scores
         Differences over their standard errors (point).
     level
-        Of error, of all points together.
+        Error rate of all points together.
     seed
-        Of what is drawn.
+        Seed of the draws.
 
     Notes
     -----
-    Runs change their groups whole, so that what binds the points of a run stays in it; the largest
-    \|t\| of the points tells what is too large for chance [1]_. P values and intervals come from
-    the same draws: of the runs' deviations from the means of their groups, since a difference that
-    exists must not widen the intervals. The runs as they are count among the draws. Each term is
-    drawn from a normal distribution.
+    Whole runs are permuted between groups, which preserves the correlation between points of a run;
+    the largest \|t\| of the points is compared with its permutation distribution [1]_. P values and
+    intervals are from the same draws, of the runs' deviations from the means of their groups,
+    because an existing difference must not widen the intervals. The measured groups are one of the
+    draws. Each term is drawn from a normal distribution.
 
     References
     ----------
@@ -95,14 +95,14 @@ def rotation_test(
     first, second, terms, level, seed
         As for `permutation_test`, without gaps.
     p_values, degrees_of_freedom
-        Of each point alone (point).
+        p value and degrees of freedom of each point alone (point).
 
     Notes
     -----
-    If all runs are drawn from one normal distribution, what is left of them beside their mean is as
-    likely as any rotation of it in the space of the runs, whatever binds the points. The smallest p
-    of the points (Welch's, of each point's own degrees of freedom) over random rotations tells what
-    chance can do [1]_, where the groups scatter alike. P values and intervals come from the same
+    If all runs are from one normal distribution, their deviations from the mean are as likely as
+    any rotation of them in the space of the runs, for any correlation between points. The smallest
+    p of the points (Welch's, with each point's own degrees of freedom) over random rotations is its
+    null distribution [1]_, if the groups scatter alike. P values and intervals are from the same
     draws, as in `permutation_test`.
 
     References
@@ -152,7 +152,7 @@ def _draw_choices(first: int, second: int, rng: np.random.Generator) -> NDArray[
 
 
 def _means_and_squares(values: Array, chosen: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Difference of the means and its squared standard error (choice, point)."""
+    """Return the difference of the means and its squared standard error (choice, point)."""
     known = np.isfinite(values)
     with np.errstate(invalid="ignore", divide="ignore"):
         middle = np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
@@ -175,7 +175,7 @@ def _add_terms(difference: Array, terms: Array, rng: np.random.Generator) -> Arr
 
 
 def _largest(difference: Array, square: Array, terms: Array, rng: np.random.Generator) -> Array:
-    """Largest absolute t of all points in each draw."""
+    """Return the largest absolute t of all points in each draw."""
     error = np.sqrt(square + (terms**2).sum(axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
         scores = np.abs(_add_terms(difference, terms, rng)) / error
@@ -184,7 +184,7 @@ def _largest(difference: Array, square: Array, terms: Array, rng: np.random.Gene
 
 @functools.lru_cache(maxsize=4)
 def _rotations(size: int, draws: int, seed: int) -> Array:
-    """Random rotations (draw, size, size); the first is the identity."""
+    """Return random rotations (draw, size, size); the first is the identity."""
     rng = np.random.default_rng(seed)
     turned, scale = np.linalg.qr(rng.normal(size=(1 + draws, size, size)))
     turned *= np.sign(np.diagonal(scale, axis1=1, axis2=2))[:, None, :]
@@ -195,7 +195,7 @@ def _rotations(size: int, draws: int, seed: int) -> Array:
 def _smallest(
     values: Array, counts: tuple[int, int], terms: Array, turns: Array, seed: int
 ) -> Array:
-    """Smallest p of all points for each rotation of the runs (run, point) about their mean."""
+    """Return the smallest p of all points for each rotation of the runs (run, point)."""
     total = sum(counts)
     columns = np.concatenate([np.ones((total, 1)), np.eye(total)[:, :-1]], axis=1)
     beside = np.linalg.qr(columns)[0][:, 1:]  # (run, direction): all directions except the mean
@@ -217,14 +217,14 @@ def _smallest(
 
 
 def _share_above(largest: Array, scores: Array) -> Array:
-    """Share of the draws whose largest score reaches each score."""
+    """Return the share of the draws whose largest score reaches each score."""
     ordered = np.sort(largest)
     bound = np.where(np.isfinite(scores), scores * (1 - _SAME), scores)
     return 1 - np.searchsorted(ordered, bound, side="left") / ordered.size
 
 
 def _share_below(smallest: Array, p_values: Array) -> Array:
-    """Share of the draws whose smallest p is at most each p."""
+    """Return the share of the draws whose smallest p is at most each p."""
     ordered = np.sort(smallest)
     share = np.searchsorted(ordered, p_values * (1 + _SAME), side="right") / ordered.size
     return np.maximum(share, 1 / ordered.size)

@@ -19,7 +19,7 @@ from tribolab.metrology.control_charts import (
 )
 
 _SERIES, _BLOCK, _MAX_RUN = 4000, 250, 2000
-_SHORT, _MORE = 400, 4  # up to this number of points, so many times as many series are affordable
+_SHORT, _MORE = 400, 4  # up to this number of points, a multiple of the series is affordable
 _SEED = 20260101
 
 
@@ -44,9 +44,9 @@ def average_run_length(
 
     Notes
     -----
-    Simulated, with an error of some 2 %. After an estimated baseline, which may be off, run lengths
-    scatter much more than of a known one, and the longest hide a chart that never signals: the
-    value is points over signals, with no series beyond 2000 points.
+    Simulated, with an error of some 2 %. With an estimated, possibly wrong baseline run lengths
+    scatter much more than with a known one, and some charts never signal: the result is the number
+    of points over that of signals, with at most 2000 points per series.
 
     Examples
     --------
@@ -65,7 +65,7 @@ def median_run_length(
     drift: float = 0.0,
     baseline: int | None = None,
 ) -> float:
-    """Median number of points until a signal; arguments as for `average_run_length`."""
+    """Return the median number of points until a signal; arguments as for `average_run_length`."""
     return float(np.median(_run_lengths(tuple(rules), shift, drift, baseline, _MAX_RUN)))
 
 
@@ -77,7 +77,7 @@ def signal_probability(
     drift: float = 0.0,
     baseline: int | None = None,
 ) -> float:
-    """Probability of a signal within a number of points; see `average_run_length`."""
+    """Return the probability of a signal within a number of points; see `average_run_length`."""
     lengths = _run_lengths(tuple(rules), shift, drift, baseline, points)
     return float((lengths <= points).mean())
 

@@ -13,7 +13,7 @@ from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.reading.dialect.uncertainty import Known
 
-_TOLD_BY_LOOPS = 3  # pairs above which the loops themselves show the drift of the zero
+_TOLD_BY_LOOPS = 3  # pairs above which the loops themselves determine the drift of the zero
 # inputs of the friction coefficient; the other names are inputs of the model
 _OF_FRICTION = (
     "friction_gain",
@@ -39,7 +39,7 @@ class SegmentReadings:
     Parameters
     ----------
     mu, load
-        Friction coefficient and mean normal force [N]; the load is NaN where none was recorded.
+        Friction coefficient and mean normal force [N]; the load is NaN if not recorded.
     direction
         +1 or -1.
     both_ways
@@ -110,7 +110,7 @@ def _values(friction: xr.Dataset, name: str, default: float) -> np.ndarray:
 
 
 def _pair_means(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndarray:
-    """Mean of a quantity over both strokes of each pair, at both; 0 without a pair."""
+    """Return the mean of a quantity over both strokes of each pair, at both; 0 without a pair."""
     sums, count = np.zeros((2, int(pair.max(initial=-1)) + 1))
     np.add.at(sums, pair[both], values[both])
     np.add.at(count, pair[both], 1.0)
@@ -118,15 +118,15 @@ def _pair_means(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.nd
 
 
 def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, np.ndarray]:
-    """Signed change of mu for one standard uncertainty of each input.
+    """Return the signed change of mu for one standard uncertainty of each input.
 
     Parameters
     ----------
     at
         From `readings_of`.
     known
-        Standard uncertainties by the names of `uncertainty.NAMES`; those that do not
-        move the friction coefficient are left out.
+        Standard uncertainties by the names of `uncertainty.NAMES`; those without effect on the
+        friction coefficient are left out.
 
     Returns
     -------
@@ -137,11 +137,11 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
     -----
     With the true normal force N, the direction s, gains g, tilts alpha and beta, cross-talk c and
     zeros z the channels read ``S_x = (1+g_x)(s mu N cos alpha + N sin alpha + c_xn N) + z_x`` and
-    ``S_n = (1+g_n)(N cos beta - s mu N sin beta + c_nx s mu N) + z_n``. Linear in one direction:
-    ``mu (g_x - g_n) + s (1 + mu^2) tilt + s c_xn - s mu^2 c_nx + s z_x/N - mu z_n/N``. Of both
-    directions together tilt, cross-talk and the zero of friction cancel but for what a change of
-    load between the strokes leaves. Hysteresis changes its sign with the direction and does not
-    cancel. The yaw acts by mu yaw^2/2, whose root of the mean square counts [1]_ [2]_.
+    ``S_n = (1+g_n)(N cos beta - s mu N sin beta + c_nx s mu N) + z_n``. Linearised, in one
+    direction: ``mu (g_x - g_n) + s (1 + mu^2) tilt + s c_xn - s mu^2 c_nx + s z_x/N - mu z_n/N``.
+    With both directions tilt, cross-talk and the zero of friction cancel except for the effect of a
+    change of load between the strokes. Hysteresis changes sign with the direction and does not
+    cancel. The effect of yaw is mu yaw^2/2, used as its root mean square [1]_ [2]_.
 
     References
     ----------
@@ -175,7 +175,7 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
 def _load_remainder(
     at: SegmentReadings, u: Mapping[str, float], parts: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Remainder of tilt and zero after a change of load between the strokes.
+    """Return the remainder of tilt and zero after a change of load between the strokes.
 
     If both are stated and no rest separates them, the middle of the loop was divided between them,
     and the remainder of each has the variance a b/(a + b).
@@ -189,6 +189,6 @@ def _load_remainder(
         return {"tilt": parts.get("tilt", 0.0) + left}
     if at.middle_is != TAKEN_FOR_ZERO or "friction_zero" in u:
         return {}
-    # between all of it and nothing
+    # uniform between zero and the full effect
     left = np.abs(at.middle * at.inverse_load_change) / np.sqrt(3)
     return {AMBIGUOUS: left} if left.any() else {}

@@ -152,7 +152,7 @@ class Findings:
         return f"{self.name}: {self.status} ({', '.join(parts)})"
 
     def told(self, everything: bool = False) -> list[tuple[str, str, str, str]]:
-        """Status, check, message and remedy of each objection and note, worst first.
+        """Return status, check, message and remedy of each objection and note, worst first.
 
         With `everything`, the results of all checks.
         """
@@ -167,7 +167,7 @@ class Findings:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """HTML table of objections and notes, with all results folded below."""
+        """Return HTML table of objections and notes, with all results folded below."""
         # imported late for a quick start
         import html
 
@@ -194,7 +194,7 @@ class Findings:
 def finding_texts(
     rows: Iterable[Mapping[str, Any]], *, notes: bool = False, everything: bool = False
 ) -> list[tuple[str, str, str, str]]:
-    """Status, check, message and remedy of each objection or note, worst first.
+    """Return status, check, message and remedy of each objection or note, worst first.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def finding_texts(
 
 
 def exit_code(statuses: set[str], fail_on: str = "fail") -> int:
-    """Exit code of a program for these statuses.
+    """Return the exit code of a program for these statuses.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Quality flags as CF flag variables: QARTOD severities and the bit mask of checks.
 
 Every variable ``X`` may carry ``X_qc`` (one severity per sample) and ``X_qc_tests`` (a bit per
-check that objected). The convention is stated here and nowhere else:
+check that objected). The convention is defined here:
 
 ===== ============== =====================================================
 value meaning        when
@@ -41,7 +41,7 @@ _BY_PRECEDENCE = np.array([NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING], dtype=n
 
 
 def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
-    """Worst severity of each sample over several checks.
+    """Return the worst severity of each sample over several checks.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
 
 
 def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
-    """Read-only array of one severity for all samples, with the memory of one.
+    """Return a read-only array of one severity for all samples, with the memory of one.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
 
 
 def is_uniform(flags: np.ndarray) -> bool:
-    """Whether an array of flags was made by `uniform` and has at least one sample."""
+    """Return whether an array of flags was made by `uniform` and has at least one sample."""
     return flags.size > 0 and not any(flags.strides)
 
 
@@ -162,7 +162,7 @@ def _pair(
 
 
 def _objecting(shape: tuple[int, ...], flags: Mapping[int, np.ndarray]) -> np.ndarray:
-    """Bit mask of the checks that objected to each sample."""
+    """Return the bit mask of the checks that objected to each sample."""
     # suspect, fail and missing have the largest numbers
     flat = {bit: values.reshape(-1) for bit, values in flags.items()}
     flat = {bit: values for bit, values in flat.items() if anywhere(_is_bad, values)}

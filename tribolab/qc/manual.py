@@ -43,7 +43,7 @@ class _DecidedSamples(NamedTuple):
     decisions: tuple[_Decision, ...]
 
     def who(self, action: str, bad: np.ndarray) -> str:
-        """Names of the authors whose decisions cover these samples."""
+        """Return the names of the authors whose decisions cover these samples."""
         names = [
             heard.author
             for heard in self.decisions

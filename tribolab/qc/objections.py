@@ -18,7 +18,7 @@ _OBJECTING = ("suspect", "fail", "error")
 def objections(
     findings: Findings | Sequence[Findings], **labels: Sequence[str | float]
 ) -> pd.DataFrame:
-    """Table of all objections, one row each.
+    """Return a table of all objections, one row each.
 
     Parameters
     ----------

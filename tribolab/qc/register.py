@@ -31,9 +31,9 @@ class Result:
     """Result of one check on one variable.
 
     `noted` marks a "pass" or "skipped" to be shown: a small effect, or one that could not be
-    tested. `cure` replaces that of the check where it would mislead. `settled` is "accepted" or
-    "rejected" if a person decided on the objection, and `settled_by` the person: it then no longer
-    counts.
+    tested. `cure` replaces that of the check if the latter would mislead. `settled` is "accepted"
+    or "rejected" if a person decided on the objection, and `settled_by` the person: it then no
+    longer counts.
     """
 
     status: str
@@ -63,7 +63,7 @@ class Check(Generic[Subject]):
     Attributes
     ----------
     name
-        As in ``campaign.toml`` and in every table.
+        Name in ``campaign.toml`` and in every table.
     bit
         Bit number in ``<variable>_qc_tests``; never reused for another check.
     question
@@ -87,7 +87,7 @@ class Check(Generic[Subject]):
 def resolve_limits(
     checks: Mapping[str, Check[Subject]], settings: Mapping[str, Mapping[str, str | float]]
 ) -> dict[str, dict[str, float]]:
-    """Limits of every check: the defaults, replaced by the user's settings.
+    """Return the limits of every check: defaults, replaced by the user's settings.
 
     Parameters
     ----------
@@ -178,8 +178,8 @@ def sample_result(
     time
         [s] (time)
     message
-        Text with ``{count}`` and ``{where}`` to fill in; ``{count:gap|gaps}`` adds the noun that
-        suits the count.
+        Text with ``{count}`` and ``{where}`` to fill in; ``{count:gap|gaps}`` adds the matching
+        noun.
     fail_share
         Share of the samples above which suspect becomes fail.
     value

@@ -54,10 +54,10 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 
     Notes
     -----
-    The height of a sample is how far it lies beyond its neighbour *and* beyond the straight line
-    through the two nearest samples, on each side; the smaller side counts. The teeth of a saw and
-    steps are therefore none, and neither is a peak behind which the signal stays elsewhere: the
-    neighbours have to agree within half the height.
+    The height of a sample is its excess over its neighbour *and* over the straight line through the
+    two nearest samples, on each side; the smaller side is used. Sawteeth and steps are therefore
+    not spikes, nor is a peak after which the signal has another level: the neighbours must agree
+    within half the height.
     """
     flags = filled(values.size, NOT_EVALUATED, np.int8)
     if values.size < 16:
@@ -77,7 +77,7 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 
 
 def _height(step: np.ndarray) -> np.ndarray:
-    """Height of each sample, except two at both ends, from the steps between samples."""
+    """Return the height of each sample, except two at both ends, from the steps between samples."""
     bend = np.diff(step)
     # left of sample i: x[i] - x[i-1] and x[i] - (2 x[i-1] - x[i-2]); right likewise
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
@@ -87,11 +87,10 @@ def _height(step: np.ndarray) -> np.ndarray:
 
 
 def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, int]:
-    """Noise level of each block, at least that of the quietest quarter, and the block length.
+    """Return the noise level of blocks, at least that of the quietest quarter, and block length.
 
-    Beside a much louder neighbour a block has its level: where a louder step begins, a block that
-    is mostly of the quiet one says nothing of the rest. What is left over at the end belongs to
-    the last block.
+    A block next to a much noisier one has the level of the latter, because it may contain the start
+    of a noisier step. The remainder at the end belongs to the last block.
     """
     blocks = max(1, values.size // block)
     length = values.size // blocks
@@ -145,7 +144,7 @@ def _runs_of_equal(values: np.ndarray, long: int) -> _EqualRuns:
 
 
 def _quantile(values: np.ndarray, counts: np.ndarray, share: float) -> float:
-    """Quantile of increasing values with given counts, as `numpy.quantile` of all of them."""
+    """Return a quantile of increasing values with counts, as `numpy.quantile` of all of them."""
     behind = np.cumsum(counts)
     place = share * (int(behind[-1]) - 1)
     below, above = (
@@ -163,20 +162,20 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     values
         (time)
     chance
-        Largest probability with which a healthy, quantised signal of this length may show such
-        a stretch anywhere.
+        Largest probability of such an interval anywhere in a sound, quantised signal of this
+        length.
     shortest
-        Stretches below this number of samples are never flagged.
+        Intervals below this number of samples are never flagged.
 
     Returns
     -------
     ndarray
-        suspect over stuck stretches, good elsewhere.
+        suspect over stuck intervals, good elsewhere.
 
     Notes
     -----
-    With r the share of equal neighbours (the longest stretch left out), a stretch of k equal
-    values appears somewhere among n samples with a probability of about n r^(k-1).
+    With r the share of equal neighbours (without the longest interval), an interval of k equal
+    values occurs somewhere among n samples with a probability of about n r^(k-1).
     """
     if values.size < 4 * shortest:
         return uniform(values.size, NOT_EVALUATED)
@@ -207,12 +206,12 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     values
         (time)
     excess
-        How many times more samples lie on the outermost value than on the next level of the
-        quantised signal, and by five standard deviations of that count at least; the tail of a
-        signal that is not cut off thins out.
+        Smallest ratio of samples at the outermost value to those at the next level of the quantised
+        signal; the excess must also be five standard deviations of that count. In a signal that is
+        not clipped the tail thins out.
     fewest
-        Smallest number of samples on the outermost value; where the signal is quantised, at
-        least two of them in a row.
+        Smallest number of samples at the outermost value; in a quantised signal at least two in a
+        row.
 
     Returns
     -------

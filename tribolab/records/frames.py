@@ -60,7 +60,7 @@ _CURVE = [
 
 
 def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame:
-    """Table of the variables over one dimension.
+    """Return a table of the variables over one dimension.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame
 
 
 def columns_of(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> dict[str, np.ndarray]:
-    """Columns of the table that `frame` makes, for the same arguments."""
+    """Return the columns of the table from `frame`, for the same arguments."""
     # not data[name], which adds coordinates to each: for a hundred variables that takes longer
     # than the rest
     names = [str(n) for n, variable in data.variables.items() if variable.dims == (dim,)]
@@ -93,7 +93,7 @@ def columns_of(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> dict[st
 
 
 def rows_of(table: pd.DataFrame | Mapping[str, np.ndarray]) -> list[Row]:
-    """Rows of a table as dictionaries by column.
+    """Return rows of a table as dictionaries by column.
 
     Examples
     --------
@@ -106,12 +106,12 @@ def rows_of(table: pd.DataFrame | Mapping[str, np.ndarray]) -> list[Row]:
 
 
 def plain_rows(table: pd.DataFrame | Mapping[str, np.ndarray]) -> tuple[Row, ...]:
-    """Rows of a table for a record: plain numbers, None if unknown."""
+    """Return rows of a table for a record: plain numbers, None if unknown."""
     return tuple(plain_value(rows_of(table)))
 
 
 def friction_columns(friction: xr.Dataset) -> dict[str, np.ndarray]:
-    """Columns of a run's friction result, a row per segment, numbered from 1.
+    """Return columns of a run's friction result, a row per segment, numbered from 1.
 
     No `pandas.DataFrame` is made, which would take most of the time for a small run.
     """
@@ -127,7 +127,7 @@ def _but(name: str, columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def curve_table(curve: xr.Dataset) -> pd.DataFrame:
-    """Table of a measured curve, a row per sliding speed."""
+    """Return a table of a measured curve, a row per sliding speed."""
     return frame(curve, "sliding_speed", _CURVE)
 
 
@@ -149,7 +149,7 @@ _START = [
 
 
 def static_friction_columns(starts: xr.Dataset) -> dict[str, np.ndarray]:
-    """Columns of a run's static friction, a row per start, with its segment from 1."""
+    """Return columns of a run's static friction, a row per start, with its segment from 1."""
     columns = _but("start_of_sliding", columns_of(starts, "start_of_sliding", _START))
     return {"segment": starts["start_of_sliding"].values + 1} | columns
 
@@ -169,7 +169,7 @@ _FIRST = [
 
 
 def stick_slip_columns(slip: xr.Dataset) -> dict[str, np.ndarray]:
-    """Columns of a run's stick-slip, a row per segment, numbered from 1."""
+    """Return columns of a run's stick-slip, a row per segment, numbered from 1."""
     number = {"segment": np.arange(1, slip.sizes["segment"] + 1)}
     columns = list(_but("segment", columns_of(slip, "segment", _FIRST)).items())
     probability = slip["class_probability"].max("waveform_class").values

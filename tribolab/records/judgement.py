@@ -30,7 +30,7 @@ _BY_HAND = {"rejected": "reject", "accepted": "accept"}  # verdict of a person, 
 
 
 def judge(kind: str, value: float | None) -> str:
-    """Status of a number of a kind: ``"fail"``, ``"suspect"`` or empty.
+    """Return the status of a number of a kind: ``"fail"``, ``"suspect"`` or empty.
 
     Examples
     --------
@@ -44,12 +44,12 @@ def judge(kind: str, value: float | None) -> str:
 
 
 def is_bad(run: Mapping[str, Any]) -> bool:
-    """Whether a run is excluded from the curves: failed, or rejected by a check or a person."""
+    """Return whether a run is excluded from the curves: failed, or rejected."""
     return run["status"] != "done" or run["quality"] in BAD
 
 
 def status_word(run: Mapping[str, Any]) -> str:
-    """Status: failed, rejected, rejected by hand, kept, accepted, suspect or done.
+    """Return the status: failed, rejected, rejected by hand, kept, accepted, suspect or done.
 
     A failed run could not be read; the numbers of a rejected run are not used.
 

@@ -53,7 +53,7 @@ class Clock:
 
 
 def clock_of(time: np.ndarray) -> Clock:
-    """Clock that keeps every time to a quarter of the distance to the next sample.
+    """Return a clock that keeps every time to a quarter of the distance to the next sample.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _knots(since: np.ndarray) -> list[int] | None:
 
 
 def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:
-    """Sample that deviates most from uniform steps, and its deviation over the tolerance."""
+    """Return the sample that deviates most from uniform steps, and its relative deviation."""
     worst, most = first + 1, -np.inf
     rate = (since[last] - since[first]) / (last - first)
     for a, b in pieces(first + 1, last):  # a long record is not copied as a whole

@@ -87,10 +87,10 @@ class CurveRecord:
         Stated standard uncertainties of the model's inputs, by name: relative, except temperature
         [K] and water content (absolute).
     traction
-        Of a machine whose two bodies turn, a row for each slide-roll ratio at each entrainment
-        speed that has several.
+        For a machine with two rotating bodies, a row for each slide-roll ratio at each entrainment
+        speed with several ratios.
     temperature_K, temperature_spread_K
-        Mean and standard deviation of the temperature while it slid; None if it was not recorded.
+        Mean and standard deviation of the temperature during sliding; None if not recorded.
     """
 
     outcome: CurveOutcome

@@ -26,7 +26,7 @@ class Verdict(NamedTuple):
 
 
 def is_usable(run: RunOutcome) -> bool:
-    """Whether a run counts: it was read, slides, and no check or person rejects it."""
+    """Return whether a run is usable: read, sliding, and not rejected by a check or person."""
     return run.done and (bool(run.segments) or run.ramp) and run.quality not in _BAD
 
 
@@ -45,12 +45,12 @@ def is_ramp(run: Mapping[str, Any]) -> bool:
 
 
 def verdict_of(runs: Sequence[RunOutcome], surfaces: Sequence[SurfaceOutcome]) -> Verdict:
-    """Verdict on a campaign.
+    """Return the verdict on a campaign.
 
     Parameters
     ----------
     runs, surfaces
-        Their outcomes.
+        Outcomes of the runs and surfaces.
     """
     scanned = [surface for surface in surfaces if surface.files]
     usable = [run for run in runs if is_usable(run)]

@@ -29,7 +29,7 @@ def _moving(slip: xr.Dataset) -> xr.Dataset:
 
 
 def traces(slip: xr.Dataset | None) -> Evidence | None:
-    """Evidence from the waveform of the friction traces."""
+    """Return evidence from the waveform of the friction traces."""
     if slip is None or not slip.sizes.get("sliding_speed", 0):
         return Evidence(UNTOUCHED, "stick-slip was not looked for in the traces", "traces")
     moving = _moving(slip)
@@ -81,7 +81,7 @@ def _drop_distance(row: xr.Dataset) -> str:
 
 
 def macroscopic_adhesion(known: Mode) -> Evidence | None:
-    """Whether adhesion reaches the macroscopic scale."""
+    """Return evidence on whether adhesion reaches the macroscopic scale."""
     work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
     if work is None:
         text = "the work of adhesion at magnification 1 is not known: it takes scans, a modulus "
@@ -100,7 +100,7 @@ def macroscopic_adhesion(known: Mode) -> Evidence | None:
 
 
 def vanishing_adhesion(known: Mode) -> Evidence | None:
-    """Whether adhesion may vanish within its uncertainty."""
+    """Return evidence if adhesion may vanish within its uncertainty."""
     bounds = known.work_of_adhesion_range
     if not known.work_of_adhesion or bounds is None or bounds[0] > 0:
         return None
@@ -109,7 +109,7 @@ def vanishing_adhesion(known: Mode) -> Evidence | None:
 
 
 def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
-    """Whether friction falls with speed where the traces oscillate, as rig stick-slip requires.
+    """Return evidence on the fall of friction with speed, which rig stick-slip requires.
 
     A spring that pulls a body against friction that falls with speed causes stick-slip of fixed
     wavelength, whatever happens at the interface.
@@ -134,7 +134,7 @@ def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
 
 
 def strength(slip: xr.Dataset | None) -> Evidence | None:
-    """Whether the oscillation weakens with speed, as expected for forced wetting."""
+    """Return evidence on the weakening of the oscillation with speed, as in forced wetting."""
     if slip is None or not slip.sizes.get("sliding_speed", 0):
         return None
     moving = _moving(slip)
@@ -154,7 +154,7 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def scaling(slip: xr.Dataset | None) -> Evidence | None:
-    """Whether a resonance with a fixed frequency is present at all speeds."""
+    """Return evidence if a resonance with a fixed frequency is present at all speeds."""
     if slip is None:
         return None
     if (own := slip.attrs.get("resonance_frequency_Hz")) is not None:
@@ -167,7 +167,7 @@ def scaling(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def repeating(slip: xr.Dataset | None) -> Evidence | None:
-    """Evidence of waves that repeat with each turn of the rig and were removed."""
+    """Return evidence of waves that repeat with each turn of the rig and were removed."""
     text = rig_wave_text(slip)
     if not text:
         return None
@@ -192,7 +192,7 @@ def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | N
 
 
 def misfit(numbers: dict[str, float]) -> Evidence | None:
-    """Whether the mixed-lubrication model is sufficient."""
+    """Return evidence on whether the mixed-lubrication model is sufficient."""
     off = numbers["model_misfit"]
     if np.isnan(off):
         return None
@@ -217,7 +217,7 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
 
 
 def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
-    """Friction expected for uniform slip at the shear stress of rough surfaces."""
+    """Return evidence from the friction of uniform slip at the shear stress of rough surfaces."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
     stress = known.rough_shear_stress
     if stress is None or not uniform > _BELOW * seen > 0:  # nothing to explain
@@ -234,7 +234,7 @@ def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
 
 
 def forced_wetting(curve: xr.Dataset, slip: xr.Dataset | None, known: Mode) -> dict[str, float]:
-    """Speeds between which forced wetting starts: stick-slip ends, or friction falls."""
+    """Return the speeds between which forced wetting starts: stick-slip ends, or friction falls."""
     if not known.fluid or slip is None:
         return {}
     speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values

@@ -14,33 +14,33 @@ _FITTED = 1  # number of fitted parameters: the shear stress
 
 
 def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> dict[str, float]:
-    """Misfit of a model to a measured curve, its p value, and its error.
+    """Return the misfit of a model to a measured curve, its p value, and its error.
 
     Parameters
     ----------
     measured
-        Measured curve (sliding_speed); of its errors ``_sem`` and ``uncertainty_part`` count.
+        Measured curve (sliding_speed), with the errors ``_sem`` and ``uncertainty_part``.
     model
         Computed curve (sliding_speed); its attribute ``abscissa_error`` is the relative standard
-        uncertainty of viscosity times speed, its ``model_part`` (model_input, sliding_speed) what
-        the errors of load, radius and modulus make of it.
+        uncertainty of viscosity times speed, its ``model_part`` (model_input, sliding_speed) the
+        effect of the errors of load, radius and modulus.
     off
-        Computed minus measured (sliding_speed); NaN where the model was not computed.
+        Computed minus measured (sliding_speed); NaN if the model was not computed.
 
     Returns
     -------
     dict
-        ``model_misfit``: root of the mean square over the largest friction [1];
-        ``model_misfit_p_value``: probability that errors alone make the points miss so far, by the
-        chi-square of their full covariance; ``model_misfit_resolved``: by how much, with 95 %, the
-        errors move such a misfit to either side [1]. NaN where they are not known.
+        ``model_misfit``: rms relative to the largest friction [1]; ``model_misfit_p_value``:
+        probability of such a misfit by errors alone, by the chi-square of their full covariance;
+        ``model_misfit_resolved``: 95 % bound of the change of the misfit by errors [1]. NaN if
+        unknown.
 
     Notes
     -----
-    With the true misfit d and errors e of covariance C the root of the mean square of d + e lies
-    within that of e of that of d. The sum of squares of e is taken for a multiple of chi-square
-    with its mean tr C and its variance 2 tr C^2 [1]_. What the fitted shear stress takes up, c =
-    friction per shear stress, is taken out of C: C - c c^T/(c^T C^-1 c).
+    With the true misfit d and errors e of covariance C, the rms of d + e differs from that of d by
+    at most the rms of e. The sum of squares of e is approximated by a multiple of chi-square with
+    its mean tr C and variance 2 tr C^2 [1]_. The direction of the fitted shear stress, c = friction
+    per shear stress, is removed from C: C - c c^T/(c^T C^-1 c).
 
     References
     ----------
@@ -77,7 +77,7 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
 
 
 def _error_bound(errors: PointErrors, solid: np.ndarray) -> float:
-    """Upper 95 % bound of the rms of the errors, after fitting a level to them."""
+    """Return the upper 95 % bound of the rms of the errors, after fitting a level to them."""
     covariance = errors.covariance
     if np.any(solid > 0):
         taken = errors.whitened(solid)
@@ -91,7 +91,7 @@ def _error_bound(errors: PointErrors, solid: np.ndarray) -> float:
 
 
 def is_sufficient(numbers: dict[str, float]) -> bool | None:
-    """Whether a model is sufficient; None if the errors are too large to decide.
+    """Return whether a model is sufficient; None if the errors are too large to decide.
 
     A model is sufficient if its misfit plus the errors is below a tenth of the largest friction, or
     if the errors explain the misfit and could have revealed one of a tenth. It is not sufficient if

@@ -29,9 +29,9 @@ class Mode:
     work_of_adhesion, work_of_adhesion_range
         gamma_eff(1) [J/m2] of this surface in this medium, and its bounds.
     area_ratio, pressure
-        A/A0 with adhesion at the load [1], and the nominal pressure there [Pa].
+        A/A0 with adhesion at the load [1], and the nominal pressure [Pa].
     rough_shear_stress
-        sigma_f [Pa] of a surface that slides steadily, corrected for the area that adhesion adds.
+        sigma_f [Pa] of a surface that slides steadily, corrected for the adhesive area.
     youngs_modulus
         [Pa]
     fluid

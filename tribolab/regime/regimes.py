@@ -13,7 +13,7 @@ _CARRIED = 0.9  # share of the load on one side that decides a regime
 
 
 def measured_regimes(curve: xr.Dataset) -> np.ndarray:
-    """Lubrication regime at each speed of a measured curve, from its shape.
+    """Return the lubrication regime at each speed of a measured curve, from its shape.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def measured_regimes(curve: xr.Dataset) -> np.ndarray:
 
 
 def model_regimes(curve: xr.Dataset) -> np.ndarray:
-    """Lubrication regime at each speed of a computed curve, from the shares of the load.
+    """Return the lubrication regime at each speed of a computed curve, from the shares of the load.
 
     Parameters
     ----------
@@ -80,6 +80,6 @@ def model_regimes(curve: xr.Dataset) -> np.ndarray:
 
 
 def end_of_boundary(speed: np.ndarray, regimes: np.ndarray) -> float:
-    """Highest speed of the boundary regime [m/s]; NaN if there is none."""
+    """Return the highest speed of the boundary regime [m/s]; NaN if there is none."""
     inside = speed[regimes == _BOUNDARY]
     return float(inside.max()) if inside.size else float("nan")

@@ -44,7 +44,7 @@ class SlidingModes(Conditions[SlidingMode]):
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """HTML of each verdict, with the evidence for and against it below."""
+        """Return HTML of each verdict, with the evidence for and against it below."""
         parts = []
         for labels, mode in self:
             rows = [(piece.side, piece.text) for piece in mode.evidence]
@@ -66,7 +66,7 @@ def sliding_modes(
     adhesion: xr.Dataset | None = None,
     band: xr.Dataset | None = None,
 ) -> SlidingModes:
-    """Sliding modes of several contacts.
+    """Return the sliding modes of several contacts.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def sliding_modes(
     Raises
     ------
     AnalysisError
-        If there is one curve only.
+        If there is only one curve.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def _condition_mode(
 def _condition_part(
     data: xr.Dataset | None, labels: Mapping[Hashable, object]
 ) -> xr.Dataset | None:
-    """Part of the data that belongs to one condition; None if there is none."""
+    """Return the part of the data that belongs to one condition; None if there is none."""
     if data is None:
         return None
     for dim, label in labels.items():
@@ -156,7 +156,7 @@ def _condition_part(
 
 
 def _value_mask(values: xr.DataArray) -> np.ndarray:
-    """Mask of where curves on common axes have a value or a text."""
+    """Return a mask of the entries at which curves on common axes have a value or a text."""
     return values.to_numpy() != "" if values.dtype.kind in "OU" else values.notnull().to_numpy()
 
 

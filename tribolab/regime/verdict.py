@@ -97,11 +97,11 @@ def sliding_mode(
 
     Notes
     -----
-    After [1]_, Secs. 5 to 8. A macroscopic instability is suspected where traces show stick-slip
-    and adhesion reaches the macroscopic scale, gamma_eff(1) > 0; with gamma_eff(1) = 0 none can
-    be, and stick-slip is local. A plateau at speeds far above the model's boundary regime, and
-    friction far below mu = sigma_f (A/A0)/p of a uniform slip at the shear stress of rough
-    surfaces, speak for it, too, but are no verdict by themselves: both may be the model's fault.
+    After [1]_, Secs. 5 to 8. A macroscopic instability is suspected if traces show stick-slip and
+    adhesion reaches the macroscopic scale, gamma_eff(1) > 0; with gamma_eff(1) = 0 it is
+    impossible, and stick-slip is local. A plateau at speeds far above the model's boundary regime,
+    and friction far below mu = sigma_f (A/A0)/p of a uniform slip at the shear stress of rough
+    surfaces, are further evidence, but not sufficient: both may be due to an inadequate model.
 
     References
     ----------
@@ -160,7 +160,7 @@ def sliding_mode(
 
 
 def oscillating_speeds(slip: xr.Dataset | None) -> np.ndarray:
-    """Speeds [m/s] with significant stick-slip."""
+    """Return the speeds [m/s] with significant stick-slip."""
     if slip is None or "waveform" not in slip:
         return np.zeros(0)
     return slip["sliding_speed"].values[oscillates(slip["waveform"].values)]

@@ -22,17 +22,17 @@ _MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # speeds over which a wavelengt
 
 
 def friction_text(value: float) -> str:
-    """Friction coefficient, or a change of it, to two digits."""
+    """Return a friction coefficient, or a change of it, as text with two digits."""
     return f"{value:.2g}"
 
 
 def percent_text(share: float) -> str:
-    """Share as a percentage."""
+    """Return a share as text in percent."""
     return f"{100 * share:.2g} %"
 
 
 def rig_wave_text(slip: xr.Dataset | None) -> str:
-    """Text on waves that repeat with each turn of the rig, with speeds and size; else ""."""
+    """Return a text on waves that repeat with each turn of the rig, with speeds and size; or ""."""
     if slip is None or "rig_wave" not in slip:
         return ""
     kinds = slip["rig_wave"].values.astype(str)
@@ -51,7 +51,7 @@ def rig_wave_text(slip: xr.Dataset | None) -> str:
 def verdict_text(
     verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
 ) -> str:
-    """Verdict as one sentence."""
+    """Return the verdict as one sentence."""
     text = _verdict_text(verdict, numbers, slip, modelled)
     return f"{text}; {wave}" if (wave := rig_wave_text(slip)) else text
 
@@ -105,7 +105,7 @@ def _verdict_text(
 def suggestions(
     verdict: str, numbers: dict[str, float], known: Mode, slip: xr.Dataset | None
 ) -> tuple[str, ...]:
-    """Measurements that would decide."""
+    """Return the measurements that would decide."""
     length = _fixed_wavelength(slip)
     compare: tuple[str, ...] = ()
     if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > _LONG:
@@ -181,7 +181,7 @@ def paragraph(
     decide: Sequence[str],
     numbers: dict[str, float],
 ) -> str:
-    """Verdict, evidence and decisive measurements as a short paragraph."""
+    """Return verdict, evidence and decisive measurements as a short paragraph."""
     parts = [f"{name[:1].upper()}{name[1:]}: {text}."]
     for side, opening in (
         ("for", "For an adhesion-controlled mode:"),

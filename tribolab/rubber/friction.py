@@ -24,7 +24,7 @@ from tribolab.units.conversion import to_si
 from tribolab.units.stamping import labelled, stamp
 
 _PER_DECADE = 60  # wavenumbers per decade if the spectrum has fewer nodes
-_ANGLES = 24  # Gauss-Legendre points on a quarter of a turn
+_ANGLES = 24  # Gauss-Legendre points on a quarter turn
 
 
 def viscoelastic_friction(
@@ -37,7 +37,7 @@ def viscoelastic_friction(
     work_of_adhesion: str | float | None = None,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Viscoelastic friction coefficient and contact area of rubber sliding on a rough surface.
+    """Return the viscoelastic friction coefficient and contact area of rubber on a rough surface.
 
     Parameters
     ----------
@@ -52,9 +52,9 @@ def viscoelastic_friction(
     poisson_ratio
         Poisson's ratio of the rubber [1].
     complete_contact
-        Take contact as complete at every wavenumber (P = S = 1), as adhesion may make it.
+        Assume complete contact at every wavenumber (P = S = 1), e.g. due to adhesion.
     work_of_adhesion
-        [J/m2]: adhesion then adds to the contact at every wavenumber, as it does at rest.
+        [J/m2]: adhesion then increases the contact at every wavenumber, as at rest.
     area
         Theory of P, see `tribolab.contact.area.area_of`.
 
@@ -68,21 +68,21 @@ def viscoelastic_friction(
     ------
     AnalysisError
         If a speed is negative, a pressure not above zero and finite, or Poisson's ratio is not
-        above -1 and at most 0.5; or if there is no such theory of the area.
+        above -1 and at most 0.5; or if the theory of the area is unknown.
 
     Notes
     -----
-    With ``e(omega) = E(omega)/((1 - nu^2) sigma_0)``: ``mu = (1/2) int q^3 C S P dq
-    int_0^{2 pi} cos(phi) Im e(q v cos phi) dphi``, ``P = erf(1/(2 sqrt(G)))``,
-    ``S = 1/2 + P^2/2``, ``G = (1/8) int q^3 C dq int_0^{2 pi} |e(q v cos phi)|^2 dphi`` [1]_.
-    At rest G is that of the elastic contact with the relaxed modulus. Another theory of the area
-    has another function of 1/(2 sqrt(G)) in place of the error function. With adhesion P is that of
-    sliding times P_adh/P of `adhesion` at rest, with the relaxed modulus, at each wavenumber; at
-    most 1. So the growth counts where the loss is made: it is larger for short waves than for long
-    ones, and friction grows by less than the whole contact area does. That the rubber is stiffer
-    at the frequencies of the shortest waves, where less would bind, is left out. Heating is left
-    out, too; ``validity`` says where contact spots of a quarter of the mean wavelength of heights
-    would heat by more than 10 K by `tribolab.rubber.temperature.flash_temperature`.
+    With ``e(omega) = E(omega)/((1 - nu^2) sigma_0)``: ``mu = (1/2) int q^3 C S P dq int_0^{2 pi}
+    cos(phi) Im e(q v cos phi) dphi``, ``P = erf(1/(2 sqrt(G)))``, ``S = 1/2 + P^2/2``, ``G = (1/8)
+    int q^3 C dq int_0^{2 pi} |e(q v cos phi)|^2 dphi`` [1]_. At rest G is that of the elastic
+    contact with the relaxed modulus. Other theories of the area replace the error function by
+    another function of 1/(2 sqrt(G)). With adhesion P is that of sliding times P_adh/P of
+    `adhesion` at rest, with the relaxed modulus, at each wavenumber; at most 1. The increase thus
+    applies at the wavenumbers of the loss: it is larger for short waves than for long ones, and
+    friction increases by less than the total contact area. Neglected are the stiffening of rubber
+    at the frequencies of the shortest waves, which reduces adhesion, and heating; ``validity`` is
+    "suspect" if contact spots of a quarter of the mean wavelength of heights would heat by more
+    than 10 K by `tribolab.rubber.temperature.flash_temperature`.
 
     References
     ----------
@@ -151,7 +151,7 @@ def _solve(
     growth: np.ndarray | None,
     theory: AreaTheory,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Friction coefficient and area at the largest wavenumber (pressures, speed)."""
+    """Return the friction coefficient and area at the largest wavenumber (pressures, speed)."""
     q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
     stored, lost = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
     # dims: pressures, then speeds and wavenumbers
@@ -169,7 +169,7 @@ def _solve(
 def _heating(
     friction: np.ndarray, area: np.ndarray, speed: xr.DataArray, over: xr.DataArray, psd: xr.Dataset
 ) -> np.ndarray:
-    """Temperature rise [K] of contact spots due to the loss in the rubber (pressures, speed)."""
+    """Return the temperature rise [K] of contact spots by the loss (pressures, speed)."""
     q, spectrum = spectrum_arrays(psd)
     first, second = (cumulative(q, spectrum, power)[-1] for power in (1, 2))
     if first == 0:
@@ -180,7 +180,7 @@ def _heating(
 
 
 def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
-    """Ratio of P(q) with and without adhesion, at rest (pressures, 1, wavenumber)."""
+    """Return the ratio of P(q) with and without adhesion, at rest (pressures, 1, wavenumber)."""
     q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
     bound = adhesion(over.values.ravel(), psd, stiffness, work)
     nodes = bound["wavenumber"].values
@@ -220,7 +220,7 @@ def _outside(
 
 
 def _turn_averages(frequency: np.ndarray, modulus: Modulus) -> tuple[np.ndarray, np.ndarray]:
-    """Integrals of |E|^2 and cos(phi) Im E over a turn of phi, with E at frequency cos(phi).
+    """Return integrals of |E|^2 and cos(phi) Im E over a turn of phi, with E at frequency cos(phi).
 
     Both are four times their integral over a quarter: E(-omega) is the conjugate of E(omega).
     """

@@ -18,7 +18,7 @@ class Modulus(Protocol):
     """Callable that returns the complex modulus E(omega) [Pa] at angular frequencies [rad/s]."""
 
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
-        """Complex modulus [Pa], with the shape of the frequencies; E(-omega) = conj(E(omega))."""
+        """Return the complex modulus [Pa] (like the frequencies); E(-omega) = conj(E(omega))."""
         ...
 
 
@@ -38,7 +38,7 @@ class FractionalZener:
     Notes
     -----
     ``E = E_0 + (E_inf - E_0) z/(1 + z)``, ``z = (i omega tau)^alpha``: analytic in the half-plane
-    that causality asks for, so that storage and loss obey the Kramers-Kronig relations.
+    required by causality, so that storage and loss obey the Kramers-Kronig relations.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class FractionalZener:
             )
 
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
-        """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
+        """Return the complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
         omega = np.asarray(angular_frequency, dtype=float)
         turn = np.exp(0.5j * np.pi * self.exponent)
         z = (np.abs(omega) * self.relaxation_time) ** self.exponent * turn
@@ -85,9 +85,9 @@ PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
 class TabulatedModulus:
     """Measured modulus, interpolated in the logarithm of the frequency.
 
-    Between entries storage and loss are power laws of the frequency (straight lines in its
-    logarithm where the loss is not positive). Outside the table the storage modulus stays what it
-    is at the end, and the loss falls as omega below and as 1/omega above, as for one relaxation.
+    Between entries storage and loss are power laws of the frequency (linear in its logarithm if the
+    loss is not positive). Outside the table the storage modulus is constant, and the loss falls as
+    omega below and as 1/omega above, as for one relaxation.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class TabulatedModulus:
             raise AnalysisError("modulus: E' must be positive, E'' not negative, both finite")
 
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
-        """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
+        """Return the complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
         omega = np.asarray(angular_frequency, dtype=float)
         size, ends = np.abs(omega), self.angular_frequency[[0, -1]]
         at, nodes = np.log(np.clip(size, *ends)), np.log(self.angular_frequency)
@@ -147,7 +147,7 @@ class _ExtrapolatedModulus:
     table: TabulatedModulus
 
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
-        """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
+        """Return the complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
         size, table = np.abs(np.asarray(angular_frequency, dtype=float)), self.table
         nodes, moduli = np.log(table.angular_frequency), []
         with np.errstate(divide="ignore"):
@@ -177,7 +177,7 @@ def read_modulus(
     sheet: str | None = None,
     unit: str | None = None,
 ) -> TabulatedModulus:
-    r"""Storage and loss modulus over frequency from the file of a rheometer or DMA.
+    r"""Return the storage and loss modulus over frequency from the file of a rheometer or DMA.
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ class PronySeries:
             raise AnalysisError("relaxation_times: finite values above 0 s are wanted")
 
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
-        """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
+        """Return the complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
         omega = np.asarray(angular_frequency, dtype=float)
         modulus = np.full(omega.shape, self.relaxed, dtype=complex)
         for stiffness, time in zip(self.moduli, self.relaxation_times, strict=True):

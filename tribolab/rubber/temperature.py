@@ -24,15 +24,15 @@ class WilliamsLandelFerry:
     Parameters
     ----------
     c1, c2
-        Constants C1 [1] and C2 [K] about the reference temperature; 17.44 and 51.6 K about the
-        glass transition are usual where nothing was measured.
+        Constants C1 [1] and C2 [K] about the reference temperature; without a measurement, 17.44
+        and 51.6 K about the glass transition are usual.
     reference_temperature
-        [K], that of the master curve; text such as ``"20 degC"``.
+        Temperature of the master curve [K], or text such as ``"20 degC"``.
 
     Notes
     -----
-    ``log10 a_T = -C1 (T - T_r)/(C2 + T - T_r)`` [1]_: what happens at the frequency omega at T does
-    so at omega a_T at the reference temperature.
+    ``log10 a_T = -C1 (T - T_r)/(C2 + T - T_r)`` [1]_: the behaviour at the frequency omega and T is
+    that at omega a_T and the reference temperature.
 
     References
     ----------
@@ -62,8 +62,8 @@ class WilliamsLandelFerry:
         Raises
         ------
         AnalysisError
-            If the temperature is so low that nothing relaxes any more, or more than 100 K above
-            the reference, where the law does not hold.
+            If the temperature is too low for relaxation, or more than 100 K above the reference,
+            where the law is not valid.
         """
         kelvin = positive(temperature, "K", "temperature")
         apart = kelvin - self.reference_temperature
@@ -83,12 +83,13 @@ class WilliamsLandelFerry:
 
 
 def modulus_at(modulus: Shiftable, temperature: str | float, law: WilliamsLandelFerry) -> Shiftable:
-    """Modulus at another temperature, by shifting its frequencies.
+    """Return the modulus at another temperature, by shifting its frequencies.
 
     Parameters
     ----------
     modulus
-        At the law's reference temperature: a master curve, a Prony series or a fractional Zener.
+        Modulus at the law's reference temperature: a master curve, a Prony series or a fractional
+        Zener.
     temperature
         [K], or text such as ``"40 degC"``.
     law
@@ -97,8 +98,7 @@ def modulus_at(modulus: Shiftable, temperature: str | float, law: WilliamsLandel
     Returns
     -------
     FractionalZener, TabulatedModulus or PronySeries
-        Of the kind that was given. A table keeps its length, at other frequencies: what lies
-        outside it stays unknown.
+        Same type as `modulus`. A table keeps its length, at other frequencies.
 
     Raises
     ------
@@ -134,19 +134,19 @@ def flash_temperature(
     conductivity: str | float = 0.16,
     diffusivity: str | float = 1.1e-7,
 ) -> np.ndarray | float:
-    """Upper bound of the temperature rise in a sliding contact spot.
+    """Return the upper bound of the temperature rise in a sliding contact spot.
 
     Parameters
     ----------
     shear_stress
-        In the real contact [Pa] (any dims).
+        Shear stress in the real contact [Pa] (any dims).
     sliding_speed
         [m/s] (any dims).
     radius
-        Of the spot [m].
+        Radius of the spot [m].
     conductivity, diffusivity
-        Of the rubber, thermal: [W/(m K)] and [m2/s]; by default those of PDMS. The other body is
-        taken as an insulator, which overstates the rise.
+        Thermal conductivity [W/(m K)] and diffusivity [m2/s] of the rubber; default: PDMS. The
+        other body is assumed to be an insulator, which overestimates the rise.
 
     Returns
     -------
@@ -161,8 +161,8 @@ def flash_temperature(
     Notes
     -----
     ``dT = 2 q a/(K sqrt(pi (1.273 + Pe)))``, q = sigma v the heat, Pe = v a/(2 kappa): a round,
-    even source in a steady state [1]_. A spot at rest has q a/K, a fast one
-    2 q/K sqrt(2 kappa a/(pi v)).
+    uniform source in a steady state [1]_. A spot at rest has q a/K, a fast one 2 q/K sqrt(2 kappa
+    a/(pi v)).
 
     References
     ----------

@@ -10,7 +10,7 @@ from tribolab.units.stamping import stamp
 
 
 def areal_roughness(scans: xr.Dataset) -> xr.Dataset:
-    """Sq and Sa of a map: rms and mean absolute height over all wavelengths.
+    """Return Sq and Sa of a map: rms and mean absolute height over all wavelengths.
 
     Parameters
     ----------
@@ -21,8 +21,8 @@ def areal_roughness(scans: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``Sq`` and ``Sa`` [m], with the dims of the heights except x and y. Heights count from their
-        mean; no waves are filtered out.
+        ``Sq`` and ``Sa`` [m], with the dims of the heights except x and y. Heights are relative to
+        their mean; no waves are filtered out.
 
     Raises
     ------

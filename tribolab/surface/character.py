@@ -18,7 +18,7 @@ _LAY = 0.4  # ratio of the slopes along and across the lay; chance gives 0.6 on 
 
 
 def self_affinity_objection(scans: xr.Dataset) -> str:
-    """Reason why the spectrum of these scans cannot be extrapolated as self-affine, or "".
+    """Return the reason against extrapolating the spectrum of these scans as self-affine, or "".
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def self_affinity_objection(scans: xr.Dataset) -> str:
 
 
 def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
-    """Share of the mean square height in the strongest single wave, and its wavelength [m].
+    """Return the share of mean square height in the strongest wave, and its wavelength [m].
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
 
 
 def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
-    """Share of the mean square height in a significant periodic wave, and its wavelength [m].
+    """Return the share of the mean square height in a periodic wave, and its wavelength [m].
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
 
 
 def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
-    """Mean power of rows under a Hann window, and the wavelength [m] of the first line."""
+    """Return the mean power of rows (Hann window), and the wavelength [m] of the first line."""
     joined = -(-rows.shape[-1] // _MOST_POINTS)
     number = rows.shape[-1] // joined
     rows = rows[:: -(-len(rows) // _MOST_ROWS), : joined * number]
@@ -143,7 +143,7 @@ def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
 
 
 def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:
-    """Ratio of the rms slopes along and across the lay of maps (..., y, x); 1 without a lay."""
+    """Return the ratio of rms slopes along and across the lay of maps (..., y, x), 1 if none."""
     height = height.reshape(-1, *height.shape[-2:])
     along_x = np.diff(height, axis=-1)[..., :-1, :] / step_x
     along_y = np.diff(height, axis=-2)[..., :, :-1] / step_y

@@ -80,13 +80,13 @@ def extrapolate(
     psd
         ``psd_2d`` [m4] (wavenumber), with ``psd_2d_low``, ``psd_2d_high`` if known.
     q_low
-        Smallest wavenumber q0 [1/m], usually pi over the width of the contact; by default that
-        of the spectrum. Above the spectrum's first one the spectrum is cut there.
+        Smallest wavenumber q0 [1/m], usually pi over the width of the contact; by default that of
+        the spectrum. If larger, the spectrum is cut there.
     q_high
         Largest wavenumber q1 [1/m]; by default pi / 1 nm.
     fit_decade
         Wavenumbers (from, to) [1/m] of the power law's fit; by default the last decade of the
-        spectrum, as far as it lies 1.5 times above the roll-off.
+        spectrum, starting at least 1.5 times above the roll-off.
 
     Returns
     -------
@@ -99,16 +99,16 @@ def extrapolate(
     Raises
     ------
     AnalysisError
-        If q_low is not below q_high, the spectrum is none, it falls over the fitted decade slower
-        or faster than a rough surface's, or that decade holds fewer than three points:
-        where it is extrapolated to large wavenumbers. Within the measured ones no power law is
-        needed; what cannot be fitted is NaN.
+        If q_low is not below q_high or the spectrum is invalid; for an extrapolation to large
+        wavenumbers also if the spectrum falls too slowly or too fast for a rough surface over the
+        fitted decade, or that decade has fewer than three points. Without this extrapolation
+        results that cannot be fitted are NaN.
 
     Notes
     -----
-    ``C = C_0 (q/q_r)^(-2(1+H))``, by weighted regression of ln C on ln q. The band widens with
-    the distance from the fitted decade by the standard errors of level and exponent; if the
-    points scatter more than their bands say, the errors grow by that ratio.
+    ``C = C_0 (q/q_r)^(-2(1+H))``, by weighted regression of ln C on ln q. The band widens with the
+    distance from the fitted decade by the standard errors of level and exponent; if the points
+    scatter more than their bands, the errors are increased by that ratio.
 
     Examples
     --------
@@ -183,7 +183,7 @@ def extrapolate(
 
 
 def _is_of_a_surface(law: PowerLaw) -> bool:
-    """Whether a rough surface can have this Hurst exponent, within its error."""
+    """Return whether a rough surface can have this Hurst exponent, within its error."""
     hurst, error = law.hurst, law.hurst_error
     sure = hurst - _NORMAL * error
     return bool(MIN_HURST.value <= hurst <= MAX_FITTED_HURST.value and sure <= MAX_SURE_HURST.value)
@@ -213,7 +213,7 @@ def _refuse_no_surface(law: PowerLaw, decade: tuple[float, float], why: str) -> 
 
 
 def origin_flags() -> dict[str, str | list[int]]:
-    """CF flag attributes that explain the values of ``origin``."""
+    """Return CF flag attributes that explain the values of ``origin``."""
     return {
         "flag_values": [AS_MEASURED, TO_SMALL, TO_LARGE],
         "flag_meanings": "measured extrapolated_to_small_q extrapolated_to_large_q",
@@ -227,7 +227,7 @@ def _grid(low: float, high: float) -> np.ndarray:
 
 
 def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
-    """Lower and upper end of the band relative to C; 1 without a band."""
+    """Return the lower and upper end of the band relative to C; 1 without a band."""
     if "psd_2d_low" not in psd:
         return np.ones((2, c.size))
     band = np.stack([psd.psd_2d_low.values, psd.psd_2d_high.values])
@@ -250,7 +250,7 @@ def _fit(
     error: np.ndarray | None,
     fit_decade: tuple[str | float, str | float] | None,
 ) -> tuple[PowerLaw, tuple[float, float], float]:
-    """Power law over the fitted decade, that decade, and where it meets the plateau [1/m]."""
+    """Return the power law over the fitted decade, that decade, and the roll-off [1/m]."""
     if fit_decade is not None:
         low, high = (to_si(value, "1/m", "fit_decade") for value in fit_decade)
         law = _regress(q, c, error, low, high)

@@ -14,7 +14,7 @@ _ALPHA = float(np.sqrt(np.log(2) / np.pi))
 
 
 def transmission(wavelength: np.ndarray | float, cutoff: float) -> np.ndarray:
-    """Amplitude transmission [1] of the Gaussian low-pass at a wavelength [m]; 0.5 at `cutoff`.
+    """Return the amplitude transmission [1] of the Gaussian low-pass; 0.5 at `cutoff` [m].
 
     >>> round(float(transmission(0.8e-3, 0.8e-3)), 12)
     0.5

@@ -28,8 +28,8 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     scans
-        Profiles, ``height`` [m] (..., x), which straight lines fill; at the ends the nearest
-        height is repeated. Maps (..., y, x) are filled from four sides, see
+        Profiles, ``height`` [m] (..., x), filled by straight lines; at the ends the nearest height
+        is repeated. Maps (..., y, x) are filled from four sides, see
         `tribolab.surface.gaps.bridge_gaps`.
 
     Returns
@@ -77,20 +77,20 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     ----------
     scans
         Profiles: ``height`` [m] (..., x). Maps: ``height`` (..., y, x), from which ``"tilt"``
-        takes a plane and ``"polynomial"`` a polynomial of both coordinates.
+        removes a plane and ``"polynomial"`` a polynomial of both coordinates.
     form
-        ``"mean"``, ``"tilt"``, ``"circle"`` (which takes tilt too: a tilted circle is a circle)
-        or ``"polynomial"``.
+        ``"mean"``, ``"tilt"``, ``"circle"`` (which includes tilt: a tilted circle is a circle) or
+        ``"polynomial"``.
     degree
         Degree of the polynomial.
 
     Returns
     -------
     xarray.Dataset
-        The scans without form (exactly zero where only rounding remains) and the form of each
-        scan: ``form_tilt`` [1] and ``form_curvature`` [1/m] at the middle of the scan
-        (positive: hollow). Dropouts are left as they are and do not count in the fit. Attributes
-        ``form_removed``, ``form_order``, ``form_radius_m`` (mean radius, for a circle).
+        The scans without form (exactly zero where only rounding remains) and the form of each scan:
+        ``form_tilt`` [1] and ``form_curvature`` [1/m] at the middle of the scan (positive: hollow).
+        Dropouts are unchanged and not used in the fit. Attributes ``form_removed``, ``form_order``,
+        ``form_radius_m`` (mean radius, for a circle).
 
     Raises
     ------
@@ -169,7 +169,7 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
 
 
 def removed_order(scans: xr.Dataset) -> int:
-    """Polynomial order of the form already removed; 0 if only the mean was."""
+    """Return the polynomial order of the form already removed; 0 if only the mean was."""
     return int(scans.attrs.get("form_order", 0))
 
 
@@ -184,7 +184,7 @@ def _remove_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def _least_squares(rows: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Coefficients (row, term) of the basis in each row; NaN has no weight."""
+    """Return least-squares coefficients (row, term) of the basis; NaN has no weight."""
     if np.isfinite(rows).all():
         # Legendre polynomials: well conditioned
         return np.linalg.solve(basis.T @ basis, (rows @ basis).T).T
@@ -267,7 +267,7 @@ def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
 
 
 def _map_coefficients(heights: np.ndarray, along_y: np.ndarray, along_x: np.ndarray) -> np.ndarray:
-    """Legendre coefficients (term of y, term of x) of least squares, up to the total degree.
+    """Return Legendre coefficients (term of y, term of x) of least squares, up to the total degree.
 
     The sums over a map of products of polynomials are sums over y of sums over x, so that no basis
     as large as the map is needed; missing heights (NaN) have no weight.

@@ -20,7 +20,7 @@ _FEW = 8  # missing heights at an end are bridged by the nearest height
 _STUDENT = 1.087  # 97.5 % quantile of Student's t with 15 degrees of freedom over the normal's
 _NORMAL = 1.96
 _DOUBT = 0.3  # share of the correction that is added to its error: gaps are not at random places
-_LOST = float(np.log(2.0))  # a larger correction factor rests more on gaps than on the measurement
+_LOST = float(np.log(2.0))  # larger correction factors depend mostly on the gaps
 
 
 class GapEffect(NamedTuple):
@@ -36,7 +36,7 @@ class GapEffect(NamedTuple):
 
 
 def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
-    """Mask of missing heights, including those filled by `fill_dropouts`, like ``height``.
+    """Return a mask of missing heights, including those filled by `fill_dropouts`, like ``height``.
 
     Returns None if no height is missing.
     """
@@ -69,7 +69,7 @@ def cut_ends(scans: xr.Dataset) -> xr.Dataset:
 
 
 def bridge_gaps(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndarray:
-    """Heights with gaps interpolated: linearly in profiles, from four sides in maps (..., y, x).
+    """Return heights with bridged gaps: linear in profiles, from four sides in maps (..., y, x).
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def bridge_gaps(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.
 def _nearest(
     height: np.ndarray, missing: np.ndarray, axis: int, *, backwards: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Nearest measured height in one direction, and its distance in points."""
+    """Return the nearest measured height in one direction, and its distance in points."""
     if backwards:
         height, missing = np.flip(height, axis), np.flip(missing, axis)
     number = height.shape[axis]
@@ -138,7 +138,7 @@ def gap_effect(
     joint: bool = False,
     own: np.ndarray | None = None,
 ) -> GapEffect:
-    """Effect of gaps on a result, from placing the same gaps elsewhere on the scan.
+    """Return the effect of gaps on a result, from placing the same gaps elsewhere on the scan.
 
     Parameters
     ----------
@@ -168,17 +168,16 @@ def gap_effect(
 
     Notes
     -----
-    The gaps are moved along (round the ends) and mirrored, in sixteen ways that are the same each
-    time; where all scans have one result, those of one scan are also laid over others, since one
-    profile may be calmer than the next. They fall on what is bridged already as often as the share
-    of the gaps, which the mean shift is corrected for. Three tenths of the shift are added to the
-    error: gaps of real scans stand on flanks and in pits rather than anywhere. A row of a map with
-    a result of its own has the effect of its own gaps on the rows where they were laid. With a
-    result of its own a profile changes as the share that is left, as one whose bridges are smooth
-    does, or by what is lost anew, and scatters as means over windows do: as 1/n of the heights
-    that are left less 1/n of those that were there before. Of known scans with
-    points, streaks, blobs and holes knocked out, 1.96 errors hold the whole scan's value in 93 to
-    99 % of cases (`tests/benchmarks/gap_coverage.py`).
+    The gaps are shifted cyclically and mirrored, in sixteen reproducible ways. If all scans have
+    one result, the gaps of one scan are also placed on others, because one profile may be smoother
+    than the next. The mean shift is corrected for gaps that fall on existing bridges. Three tenths
+    of the shift are added to the error: gaps of real scans are on flanks and in pits rather than at
+    random. If each row of a map has a result, the effect of its gaps is that on the rows where they
+    were placed. A result of a single profile changes in proportion to the remaining heights (as
+    with smooth bridges) or to the newly lost ones, and scatters like means over windows: as 1/n of
+    the remaining heights minus 1/n of the earlier ones. For scans with points, streaks, blobs and
+    holes removed, 1.96 errors include the value of the complete scan in 93 to 99 % of cases
+    (`tests/benchmarks/gap_coverage.py`).
     """
     share = float(missing.reshape(len(missing), -1).mean(axis=1).max())
     if share > _MOST:
@@ -193,7 +192,7 @@ def gap_effect(
         laid = missing[rng.permutation(len(missing))] if joint else missing
         gaps, row = _elsewhere(laid, rng, (-2, -1) if is_map else (-1,))
         change = measure(bridge_gaps(height, gaps, is_map=is_map)) - whole
-        if own is not None and is_map:  # of the row that these gaps come from
+        if own is not None and is_map:  # the row that these gaps belong to
             back = np.broadcast_to(np.argsort(row, axis=-1), change.shape)
             change = np.take_along_axis(change, back, axis=-1)
         changes.append(change)
@@ -213,7 +212,7 @@ def gap_effect(
 
 
 def logarithm(power: np.ndarray) -> np.ndarray:
-    """Natural logarithm of positive values; zeros give that of the smallest float."""
+    """Return the natural logarithm of positive values; zeros give that of the smallest float."""
     return np.log(np.maximum(power, np.finfo(float).tiny))
 
 
@@ -228,7 +227,7 @@ def effective_values(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
 
 
 def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
-    """Wavenumber [1/m] above which bridges changed the power by more than half; else infinite.
+    """Return the wavenumber [1/m] above which bridges changed half of the power; else infinite.
 
     >>> effect = GapEffect(np.zeros(4), np.ones(4), bridges=np.array([0.9, 0.1, 0.8, 0.9]))
     >>> gap_cutoff(np.array([1.0, 2.0, 3.0, 4.0]), effect)
@@ -241,7 +240,7 @@ def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
 def _window_factors(
     missing: np.ndarray, left: np.ndarray, logarithms: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Factors by which gaps change a result more than the same gaps placed partly on bridges.
+    """Return factors by which gaps change a result more than gaps placed partly on bridges.
 
     Parameters
     ----------
@@ -271,7 +270,7 @@ def _window_factors(
 def _elsewhere(
     missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Gaps of each scan, moved and mirrored at random along some axes.
+    """Return gaps of each scan, moved and mirrored at random along some axes.
 
     Also returns the row from which each row of a map takes its gaps, (scan, y).
     """
@@ -292,7 +291,7 @@ def _elsewhere(
 
 
 def _shift(gaps: np.ndarray, rng: np.random.Generator, axis: int) -> int:
-    """Distance by which gaps are moved; no gap of a profile is split at the ends."""
+    """Return the distance by which gaps are moved; no gap of a profile is split at the ends."""
     if gaps.ndim > 1:
         return int(rng.integers(gaps.shape[axis]))
     starts = np.flatnonzero(~(gaps & np.roll(gaps, 1)))

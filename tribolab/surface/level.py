@@ -16,7 +16,7 @@ _CHUNK = 1 << 20
 
 
 def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
-    """Mask of rows whose residual heights are rounding errors only.
+    """Return a mask of rows whose residual heights are rounding errors only.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:
-    """Largest magnitude of the finite values of each row; NaN without any."""
+    """Return the largest magnitude of the finite values of each row; NaN without any."""
     largest = np.maximum(np.fmax.reduce(rows, axis=-1), -np.fmin.reduce(rows, axis=-1))
     for row in np.flatnonzero(np.isinf(largest)):
         finite = rows[row][np.isfinite(rows[row])]
@@ -50,7 +50,7 @@ def _largest(rows: np.ndarray) -> np.ndarray:
 
 
 def level_rows(height: np.ndarray) -> np.ndarray:
-    """Mask of rows (row, x) whose heights are all equal or on one straight line.
+    """Return a mask of rows (row, x) whose heights are all equal or on one straight line.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def level_rows(height: np.ndarray) -> np.ndarray:
 
 
 def level_map(height: np.ndarray) -> bool:
-    """Whether the heights (y, x) of a map are all equal or on one plane."""
+    """Return whether the heights (y, x) of a map are all equal or on one plane."""
     first = slice(0, 8)  # these rows are enough for most maps, which are not level
     return bool(
         level_rows(height[first]).all() and level_rows(height).all() and level_rows(height.T).all()

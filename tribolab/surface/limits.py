@@ -1,4 +1,4 @@
-"""Numbers that decide on spectra of surfaces, with their reasons."""
+"""Limits for spectra of surfaces, with their reasons."""
 
 from tribolab.core.limit import Limit
 

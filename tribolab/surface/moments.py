@@ -15,7 +15,7 @@ from tribolab.core.errors import AnalysisError
 
 
 def spectrum_arrays(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Wavenumbers [rad/m] and C [m4] of a power spectrum after checking them.
+    """Return the checked wavenumbers [rad/m] and C [m4] of a power spectrum.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def spectrum_arrays(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def bin_integrals(q: np.ndarray, spectrum: np.ndarray, order: float) -> np.ndarray:
-    """Integrals of q^order C over the bins between the nodes.
+    """Return the integrals of q^order C over the bins between the nodes.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def _integral(
     order: float,
     linear: np.ndarray,
 ) -> np.ndarray:
-    """Integrals of q^order C from a to b, with C a power law or, if `linear`, a straight line."""
+    """Return integrals of q^order C from a to b, for C a power law or, if `linear`, a line."""
     width = np.log(b / a)
     g = a ** (order + 1) * left
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -108,12 +108,12 @@ def _integral(
 
 
 def _power(a: np.ndarray, b: np.ndarray, order: float) -> np.ndarray:
-    """Integral of q^order from a to b."""
+    """Return the integral of q^order from a to b."""
     return np.log(b / a) if order == -1 else (b ** (order + 1) - a ** (order + 1)) / (order + 1)
 
 
 def cumulative(q: np.ndarray, spectrum: np.ndarray, order: float) -> np.ndarray:
-    """Integral of q^order C from the first node to each node (..., n); starts with 0."""
+    """Return the integral of q^order C from the first node to each node (..., n); starts with 0."""
     bins = bin_integrals(q, spectrum, order)
     start = np.zeros((*bins.shape[:-1], 1))
     return np.concatenate([start, np.cumsum(bins, axis=-1)], axis=-1)
@@ -122,7 +122,7 @@ def cumulative(q: np.ndarray, spectrum: np.ndarray, order: float) -> np.ndarray:
 def cumulative_at(
     wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray, order: float
 ) -> np.ndarray:
-    """Integral of q^order C from the first node to any wavenumber inside the spectrum."""
+    """Return the integral of q^order C from the first node to any wavenumber of the spectrum."""
     left = np.clip(np.searchsorted(q, wavenumber, side="right") - 1, 0, q.size - 2)
     low, high = spectrum[left], spectrum[left + 1]
     here = spectrum_at(wavenumber, q, spectrum)
@@ -131,7 +131,7 @@ def cumulative_at(
 
 
 def spectral_moment(psd: xr.Dataset, order: float) -> float:
-    """Moment int q^order C dq of a power spectrum over all its wavenumbers.
+    """Return the moment int q^order C dq of a power spectrum over all its wavenumbers.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def spectral_moment(psd: xr.Dataset, order: float) -> float:
     Raises
     ------
     AnalysisError
-        If the spectrum is no spectrum, see `spectrum_arrays`.
+        If the spectrum is invalid, see `spectrum_arrays`.
 
     Examples
     --------
@@ -162,7 +162,7 @@ def spectral_moment(psd: xr.Dataset, order: float) -> float:
 
 
 def cumulative_moment(psd: xr.Dataset, order: float) -> xr.DataArray:
-    """Cumulative moment int_{q0}^{q} q'^order C dq' at every wavenumber of the spectrum.
+    """Return the cumulative moment int_{q0}^{q} q'^order C dq' at every wavenumber of the spectrum.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def cumulative_moment(psd: xr.Dataset, order: float) -> xr.DataArray:
     Raises
     ------
     AnalysisError
-        If the spectrum is no spectrum, see `spectrum_arrays`.
+        If the spectrum is invalid, see `spectrum_arrays`.
 
     Examples
     --------
@@ -204,19 +204,19 @@ def cumulative_moment(psd: xr.Dataset, order: float) -> xr.DataArray:
 
 
 def rms_roughness(psd: xr.Dataset) -> float:
-    """Root-mean-square roughness h_rms [m]: <h^2> = 2 pi int q C dq."""
+    """Return the rms roughness h_rms [m]: <h^2> = 2 pi int q C dq."""
     return float(np.sqrt(2 * np.pi * spectral_moment(psd, 1)))
 
 
 def rms_slope(psd: xr.Dataset) -> float:
-    """Root-mean-square slope xi [1] of the surface: xi^2 = 2 pi int q^3 C dq (Eq. 12)."""
+    """Return the rms slope xi [1] of the surface: xi^2 = 2 pi int q^3 C dq (Eq. 12)."""
     return float(np.sqrt(2 * np.pi * spectral_moment(psd, 3)))
 
 
 def refine_nodes(
     q: np.ndarray, spectrum: np.ndarray, per_decade: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Spectrum with extra nodes on its log-log lines, until bins are narrower than 1/per_decade.
+    """Return the spectrum with extra nodes, until bins are narrower than 1/per_decade.
 
     The moments do not change; quantities at the nodes (a gap, a modulus) are resolved better.
     Bins next to a zero, where C is linear in q, are not divided.
@@ -231,7 +231,7 @@ def refine_nodes(
 
 
 def spectrum_at(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
-    """C at any wavenumber inside the spectrum: power law between nodes, linear next to a zero."""
+    """Return C at any wavenumber of the spectrum: power law, or linear next to a zero."""
     wavenumber = np.asarray(wavenumber, dtype=float)
     if (spectrum > 0).all():
         return np.exp(np.interp(np.log(wavenumber), np.log(q), np.log(spectrum)))
@@ -246,7 +246,7 @@ def spectrum_at(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -> 
 
 
 def band(psd: xr.Dataset, q_low: float, q_high: float) -> xr.Dataset:
-    """Part of a power spectrum between two wavenumbers, with nodes at both.
+    """Return the part of a power spectrum between two wavenumbers, with nodes at both.
 
     Parameters
     ----------

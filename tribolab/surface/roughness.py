@@ -31,7 +31,7 @@ def roughness_parameters(
     lambda_s: str | float | None = "auto",
     sampling_lengths: bool = True,
 ) -> xr.Dataset:
-    """Ra, Rq, Rz, Rsk, Rku and Rdq of profiles after the standard Gaussian filter.
+    """Return Ra, Rq, Rz, Rsk, Rku and Rdq of profiles after the standard Gaussian filter.
 
     Parameters
     ----------
@@ -61,16 +61,16 @@ def roughness_parameters(
     Raises
     ------
     AnalysisError
-        If the heights do not vary but for rounding, if more than half of a scan's are missing, or
-        if the profile is shorter than two cut-offs.
+        If the heights do not vary except for rounding, if more than half of a scan's are missing,
+        or if the profile is shorter than two cut-offs.
 
     Notes
     -----
     The roughness profile is heights minus their Gaussian mean line. Half a cut-off at each end,
-    where the filter runs in, is left out. Heights count from the mean line, or without lambda_c
-    from their mean. Rz is the mean over sampling lengths of the height from the deepest valley to
-    the highest peak. Rdq uses the seven-point formula of ISO 4287. If a hole covers more than half
-    of a sampling length, Rsk and Rku use the measured heights of the other lengths.
+    affected by the filter, is left out. Heights are relative to the mean line, or without lambda_c
+    to their mean. Rz is the mean over sampling lengths of the height from the deepest valley to the
+    highest peak. Rdq uses the seven-point formula of ISO 4287. If a hole covers more than half of a
+    sampling length, Rsk and Rku use the measured heights of the other lengths.
 
     References
     ----------
@@ -118,7 +118,7 @@ def roughness_parameters(
 
 
 def primary_roughness(scans: xr.Dataset) -> xr.DataArray:
-    """Pq: rms height of each profile over all wavelengths.
+    """Return Pq, the rms height of each profile over all wavelengths.
 
     Parameters
     ----------
@@ -128,8 +128,8 @@ def primary_roughness(scans: xr.Dataset) -> xr.DataArray:
     Returns
     -------
     xarray.DataArray
-        Pq [m], with the dims of the heights but x: that of the profile as it is without form. Rq
-        leaves out waves longer than the cut-off and is smaller.
+        Pq [m] of the profile without form, with the dims of the heights except x. Rq leaves out
+        waves longer than the cut-off and is smaller.
 
     References
     ----------
@@ -170,7 +170,7 @@ class _Evaluation(NamedTuple):
         return rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
 
     def profile(self, scans: xr.Dataset) -> np.ndarray:
-        """Roughness profile [m] (..., x) over the evaluation length."""
+        """Return roughness profile [m] (..., x) over the evaluation length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         profile = scans if self.fine is None else gaussian_filter(scans, self.fine)
         height = profile.height.transpose(..., "x")
@@ -186,7 +186,7 @@ class _Evaluation(NamedTuple):
         return np.asarray(height.values)
 
     def parameters(self, scans: xr.Dataset) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """Parameters of profiles without gaps, overall and for each sampling length."""
+        """Return the parameters of profiles without gaps, overall and for each sampling length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         rows = self.profile(scans)
         parts = self.parts(rows)
@@ -229,7 +229,7 @@ def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 def _correct_gaps(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
-    """Results corrected for gaps, with their remaining standard error (``Ra_gap_error``)."""
+    """Return results corrected for gaps, with their remaining standard error (``Ra_gap_error``)."""
     shape = scans.height.shape
     is_map = "y" in scans.height.dims
     grid = shape[-2:] if is_map else shape[-1:]
@@ -287,7 +287,7 @@ def _tails_of_holes(
 def _long_cutoff(
     lambda_c: str | float | None, scans: xr.Dataset, length: float
 ) -> tuple[float | None, bool]:
-    """Long-wave cut-off [m], and whether the instrument applied it already."""
+    """Return the long-wave cut-off [m], and whether the instrument applied it already."""
     if lambda_c is None:
         return None, False
     if lambda_c != "auto":
@@ -298,7 +298,7 @@ def _long_cutoff(
 
 
 def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
-    """Local slope from the seven-point formula of ISO 4287 (4.4.1)."""
+    """Return the local slope from the seven-point formula of ISO 4287 (4.4.1)."""
     if rows.shape[-1] < 7:
         raise AnalysisError("seven points are the least", function="roughness_parameters")
     ahead = 45 * rows[..., 4:-2] - 9 * rows[..., 5:-1] + rows[..., 6:]
@@ -308,7 +308,7 @@ def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
 
 @over_dims(psd=("wavenumber",))
 def spectral_roughness(psd: xr.Dataset) -> xr.Dataset:
-    """Rms roughness, slope and curvature of a spectrum, cumulative in q.
+    """Return the rms roughness, slope and curvature of a spectrum, cumulative in q.
 
     Parameters
     ----------
@@ -321,7 +321,7 @@ def spectral_roughness(psd: xr.Dataset) -> xr.Dataset:
     xarray.Dataset
         ``rms_roughness`` [m], ``rms_slope`` [1], ``rms_curvature`` [1/m] of all waves up to each
         ``wavenumber``; the last value is the whole. With a band, ``..._low`` and ``..._high``:
-        outer bounds, as if every point erred to the same side.
+        outer bounds, as if all points had errors of the same sign.
 
     Notes
     -----

@@ -58,7 +58,7 @@ class SelfAffine:
 
 
 def psd_2d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
-    """Two-dimensional power spectrum C(q) [m4] at wavenumbers [1/m] (any dims)."""
+    """Return the two-dimensional power spectrum C(q) [m4] at wavenumbers [1/m] (any dims)."""
     q = np.asarray(wavenumber, dtype=float)
     above = np.maximum(q / spectrum.rolloff, 1.0) ** (-2 * (1 + spectrum.hurst))
     inside = (q >= spectrum.low) & (q <= spectrum.high)
@@ -66,7 +66,7 @@ def psd_2d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
 
 
 def psd_1d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
-    """Two-sided 1D power spectrum of a straight profile, in closed form.
+    """Return the two-sided 1D power spectrum of a straight profile, in closed form.
 
     Parameters
     ----------
@@ -84,9 +84,9 @@ def psd_1d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
     Notes
     -----
     The forward Abel transform ``C_1D(k) = 2 int_k^inf C(q) q / sqrt(q^2 - k^2) dq``: over the
-    plateau a difference of square roots, over the power law an incomplete beta function with
-    ``t = k^2/q^2``. Between 0 and `low` it is not zero: waves that run askew to the profile look
-    longer along it than they are.
+    plateau a difference of square roots, over the power law an incomplete beta function with ``t =
+    k^2/q^2``. Between 0 and `low` it is not zero: waves oblique to the profile appear longer along
+    it.
     """
     # imported late: scipy loads slowly
     from scipy.special import beta, betainc
@@ -104,7 +104,7 @@ def psd_1d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
 
 
 def moment(spectrum: SelfAffine, order: float) -> float:
-    """Integral of ``q^order C(q)`` over all wavenumbers [m^(3-order)], in closed form."""
+    """Return the integral of ``q^order C(q)`` over all wavenumbers, in closed form."""
     ratios = spectrum.low / spectrum.rolloff, spectrum.high / spectrum.rolloff
     flat = (1 - ratios[0] ** (order + 1)) / (order + 1)
     power = order + 1 - 2 * (1 + spectrum.hurst)
@@ -113,12 +113,12 @@ def moment(spectrum: SelfAffine, order: float) -> float:
 
 
 def rms_roughness(spectrum: SelfAffine) -> float:
-    """Root-mean-square roughness h_rms [m]: ``h_rms^2 = 2 pi int q C dq``."""
+    """Return the root-mean-square roughness h_rms [m]: ``h_rms^2 = 2 pi int q C dq``."""
     return float(np.sqrt(2 * np.pi * moment(spectrum, 1)))
 
 
 def rms_slope(spectrum: SelfAffine) -> float:
-    """Root-mean-square slope xi [1] of the surface: ``xi^2 = 2 pi int q^3 C dq`` (Eq. 12 of [1]).
+    """Return the rms slope xi [1] of the surface: ``xi^2 = 2 pi int q^3 C dq`` (Eq. 12 of [1]).
 
     A straight profile shows a slope smaller by ``sqrt(2)``.
 
@@ -138,7 +138,7 @@ def self_affine_psd(
     high: str | float,
     points: int = 1201,
 ) -> xr.Dataset:
-    """Power spectrum of a self-affine surface of given rms roughness, constant below a roll-off.
+    """Return the spectrum of a self-affine surface of given rms roughness with a roll-off.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def self_affine_psd(
     Raises
     ------
     AnalysisError
-        If the wavenumbers do not follow each other, or a number is not positive.
+        If the wavenumbers are not in increasing order, or a number is not positive.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def self_affine_psd(
 
 
 def tabulate(spectrum: SelfAffine, points: int = 1201) -> xr.Dataset:
-    """Spectrum on a logarithmic grid from `low` to `high`, with a node at the roll-off.
+    """Return the spectrum on a logarithmic grid from `low` to `high`, with a node at the roll-off.
 
     Returns
     -------

@@ -28,16 +28,16 @@ def synthesise_profiles(
     points, pitch
         Number of points of a profile, and their distance [m].
     profiles
-        How many independent profiles.
+        Number of independent profiles.
     rng
         Generator or seed.
 
     Returns
     -------
     xarray.Dataset
-        ``height`` [m] (profile, x), with zero mean, periodic over ``points * pitch``. The
-        attributes state what the band of the profile cannot hold: ``variance_of_spectrum_m2`` is
-        the surface's, ``variance_in_band_m2`` what is expected of these profiles.
+        ``height`` [m] (profile, x), with zero mean, periodic over ``points * pitch``. Attributes:
+        ``variance_of_spectrum_m2`` of the surface, and ``variance_in_band_m2`` expected for the
+        wavenumbers of these profiles.
 
     Raises
     ------
@@ -46,9 +46,9 @@ def synthesise_profiles(
 
     Notes
     -----
-    Waves ``k_j = 2 pi j / length`` up to ``pi / pitch`` get independent normal amplitudes of
-    variance ``2 C_1D(k_j) dk``, with the two-sided C_1D of `self_affine.psd_1d`. Waves longer
-    than the length and shorter than two points are left out.
+    Waves ``k_j = 2 pi j / length`` up to ``pi / pitch`` have independent normal amplitudes of
+    variance ``2 C_1D(k_j) dk``, with the two-sided C_1D of `self_affine.psd_1d`. Waves longer than
+    the length and shorter than two points are left out.
 
     Examples
     --------
@@ -114,8 +114,8 @@ def synthesise_map(
 
     Notes
     -----
-    White noise, filtered by ``(2 pi / pitch) sqrt(C(q))``. Only the waves that fit the square
-    are there, on a lattice with the step ``2 pi / (points * pitch)``.
+    White noise, filtered by ``(2 pi / pitch) sqrt(C(q))``. Only waves that fit the square are
+    included, on a lattice with the step ``2 pi / (points * pitch)``.
 
     Examples
     --------

@@ -49,7 +49,7 @@ _SPELLINGS = {
     "mPa s": "mPa*s",
     "mPa.s": "mPa*s",
 }
-# torques: pint reads Nm as a yarn count
+# torques: pint reads Nm as number metric, a yarn count
 _SPELLINGS |= {
     f"{prefix}N{sign}{length}": f"{prefix}N*{length}"
     for prefix in ("", "u", "m", "c", "k")
@@ -136,7 +136,7 @@ def _prefix(unit: str, si_unit: str) -> float | None:
     return None
 
 
-# units that instruments write most, and those that only measure the wanted quantity
+# common units of instruments, and those that only measure the requested quantity
 _EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s)")
 _ASKED = frozenset(
     ("", "1", "s", "m", "m2", "m3", "m4", "m/s", "m2/s", "1/m", "1/s", "Hz", "rad", "rad/s", "N")
@@ -147,7 +147,7 @@ _ASKED = frozenset(
 
 
 def _measures_another(unit: str, si_unit: str) -> bool:
-    """Whether a common unit is known to measure another quantity, without asking pint."""
+    """Return whether a common unit is known to measure another quantity, without asking pint."""
     everyday = _EVERYDAY.fullmatch(unit)
     if everyday is None or si_unit not in _ASKED:
         return False
@@ -186,7 +186,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         raise UnitError(f"'{shown(unit)}' is not a unit: it has more than {_MAX_QUANTITY} letters")
     if (unit, si_unit) in _USUAL:
         return _USUAL[unit, si_unit]
-    if (unit, si_unit) == ("mS", "s"):  # nobody measures time in siemens
+    if (unit, si_unit) == ("mS", "s"):  # milliseconds: time is never in siemens
         return 1e-3, 0.0
     if _measures_another(unit, si_unit):
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'")
@@ -230,7 +230,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
 
 
 def base_unit(unit: str) -> str:
-    """SI base units of a unit; "m" for text that is not a unit.
+    """Return the SI base units of a unit; "m" for text that is not a unit.
 
     Examples
     --------

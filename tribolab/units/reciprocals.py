@@ -95,7 +95,7 @@ def _of(count: str, per: str) -> Reciprocal | None:
 
 
 def counts_turns(unit: str) -> bool:
-    """Whether a unit is a name of turns or cycles alone.
+    """Return whether a unit is only a name of turns or cycles.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def counts_turns(unit: str) -> bool:
 
 
 def usual_reading(si_unit: str) -> Counted:
-    """Meaning of a bare reciprocal without a known quantity; "ask" if ambiguous.
+    """Return the meaning of a bare reciprocal without a known quantity; "ask" if ambiguous.
 
     Examples
     --------
@@ -118,12 +118,12 @@ def usual_reading(si_unit: str) -> Counted:
 
 
 def scale_of_reciprocal(unit: str, si_unit: str, bare: Counted) -> float | None:
-    """Factor from a unit per time or length to SI; None for other units.
+    """Return the factor from a unit per time or length to SI; None for other units.
 
     Parameters
     ----------
     unit, si_unit
-        The unit as written, and the one wanted.
+        The unit as written, and the requested one.
     bare
         Meaning of a unit that names neither cycles nor radians.
 
@@ -162,7 +162,7 @@ _ANGLES = re.compile(
 
 
 def holds_an_angle(unit: str) -> bool:
-    """Whether a unit names cycles or an angle, which pint treats as pure numbers.
+    """Return whether a unit names cycles or an angle, which pint treats as pure numbers.
 
     Examples
     --------

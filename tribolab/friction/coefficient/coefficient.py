@@ -213,7 +213,7 @@ def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
 
 
 def trimmed_slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
-    """Index ranges of the samples of each trimmed segment."""
+    """Return the index ranges of the samples of each trimmed segment."""
     time = run["time"].values
     first = np.searchsorted(time, segments["trimmed_start"].values, side="left")
     last = np.searchsorted(time, segments["trimmed_stop"].values, side="right")

@@ -133,7 +133,7 @@ def check_run(
 def _drop_rejected(
     segments: xr.Dataset | None, friction: xr.Dataset | None, slip: xr.Dataset | None
 ) -> list[xr.Dataset | None]:
-    """Results without rejected segments, unless the whole run is rejected."""
+    """Return results without rejected segments, unless the whole run is rejected."""
     parts = [segments, friction, slip]
     if segments is None or rejected(segments).all():
         return parts

@@ -33,7 +33,7 @@ def _reversed_slip(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
 
 
 def _follows_load(subject: RunSubject, least: float) -> np.ndarray:
-    """Mask of segments in which friction varies because the load does."""
+    """Return a mask of segments in which the load causes the variation of friction."""
     name = subject.required_friction_signal
     if "normal_force" not in subject.signals or name != "friction_force":
         return np.zeros(len(subject.slices), bool)
@@ -89,7 +89,7 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> str:
-    """Remedy for a wrong sign; suggests changing it only if nothing else can be wrong.
+    """Return the remedy for a wrong sign; suggests changing it only if nothing else can be wrong.
 
     This needs all clear strokes to be reversed, in both directions, and a loop centred on zero:
     an offset larger than friction reverses strokes as well.
@@ -128,7 +128,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
 
 
 def _unsigned_speed(subject: RunSubject) -> bool:
-    """Whether the velocity is never negative, as from a tachometer without direction."""
+    """Return whether the velocity is never negative, as from a tachometer without direction."""
     velocity = subject.signals.get("sliding_velocity")
     return velocity is not None and not (velocity < 0).any()
 

@@ -33,7 +33,7 @@ def segment_results(
     limits: Mapping[str, float],
     what: str,
 ) -> list[Result]:
-    """Results from one number per segment, with flags on the samples."""
+    """Return results from one number per segment, with flags on the samples."""
     flags = grade(values, limits["suspect"], limits.get("fail", np.inf))
     if (flags == NOT_EVALUATED).all():
         raise Skip(f"{what}: no reference value")
@@ -51,7 +51,7 @@ def segment_results(
 
 
 def status_of(value: float, limits: Mapping[str, float]) -> str:
-    """Status of a number by its limits ``suspect`` and ``fail``.
+    """Return the status of a number by its limits ``suspect`` and ``fail``.
 
     Examples
     --------

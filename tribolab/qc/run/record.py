@@ -175,7 +175,7 @@ def _drop_rests(subject: RunSubject, values: np.ndarray, flags: np.ndarray) -> n
 
 
 def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
-    """Whether a constant load is a set-point: not zero, no digit ever changes, friction varies."""
+    """Return whether a constant load is a set-point: nonzero, constant, while friction varies."""
     if not (np.nanmin(load) == np.nanmax(load) != 0):
         return False
     others = [values for name, values in subject.force_signals.items() if name != "normal_force"]
@@ -183,7 +183,7 @@ def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
 
 
 def _is_stated(subject: RunSubject, name: str) -> bool:
-    """Whether a force is computed from stated values only, which change with step or direction."""
+    """Return whether a force is computed only from stated values, which change with the step."""
     formula = subject.run.attrs.get("derived", {}).get(name)
     if formula is None or formula == "stated":
         return formula is not None
@@ -259,7 +259,7 @@ def _joins(subject: RunSubject) -> np.ndarray:
 
 
 def _mean_shift(values: np.ndarray, flags: np.ndarray) -> float:
-    """Share by which outlying samples change the mean magnitude of a signal."""
+    """Return the share by which outlying samples change the mean magnitude of a signal."""
     places = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
     before, after = np.maximum(places - 1, 0), np.minimum(places + 1, values.size - 1)
     usual = 0.5 * (values[before] + values[after])

@@ -180,7 +180,7 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
 
 
 def _slope(subject: RunSubject, part: slice, noise: float) -> tuple[float, float]:
-    """Slope of the position over a segment and its error [m/s] for a reading error `noise` [m].
+    """Return the slope of the position in a segment and its error [m/s] for a reading error [m].
 
     Deviations from a line are not noise, because a stage that stops deviates too. In a segment
     without a change of digit the reading error is constant.

@@ -29,7 +29,7 @@ class Range(NamedTuple):
 
 @functools.cache
 def ranges() -> Mapping[str, Range]:
-    """Plausible range of each signal of a run, from ``run.schema.json``.
+    """Return the plausible range of each signal of a run, from ``run.schema.json``.
 
     The ranges are wide: they catch a wrong unit or an error code read as a number, not an unusual
     measurement. `table_schema.validate` uses the same ones.
@@ -72,7 +72,7 @@ def flag_range(values: np.ndarray, limits: Range) -> np.ndarray:
 
 
 def wrong_units(run: xr.Dataset) -> dict[str, str]:
-    """Variables whose unit differs from that of the dictionary of quantities, with the unit."""
+    """Return the variables whose unit differs from that of the dictionary, with the unit."""
     wrong = {}
     for name, variable in run.variables.items():
         known = QUANTITIES.get(str(name))
@@ -83,7 +83,7 @@ def wrong_units(run: xr.Dataset) -> dict[str, str]:
 
 
 def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
-    """Signals that a friction run needs but this one lacks, each with a remedy."""
+    """Return signals that a friction run needs but this one lacks, each with a remedy."""
     missing = []
     if not any(name in run for name in _FRICTION):
         missing.append(
@@ -105,7 +105,7 @@ def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def tensile_share(normal_force: np.ndarray) -> float:
-    """Share of the loaded samples in which the normal force is tensile.
+    """Return the share of the loaded samples in which the normal force is tensile.
 
     Samples are loaded if the magnitude exceeds a tenth of the 99th percentile. Adhesion can be
     tensile for a moment, but no run slides under tension.

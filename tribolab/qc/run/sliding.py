@@ -144,7 +144,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
 
 
 def _load_groups(friction: xr.Dataset) -> list[np.ndarray]:
-    """Segments under each load, in the order of the loads."""
+    """Return the segments under each load, in the order of the loads."""
     every = np.arange(friction.sizes["segment"])
     if "normal_force" not in friction:
         return [every]

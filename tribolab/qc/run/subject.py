@@ -185,7 +185,7 @@ class RunSubject:
         return np.full(size, float(self.run.attrs.get("set_normal_force_N", np.nan)))
 
     def segment_means(self, name: str) -> np.ndarray:
-        """Mean of a signal over each trimmed segment; without the signal the check is skipped."""
+        """Return the mean of a signal in each trimmed segment; skip the check without it."""
         if name not in self.signals:
             raise Skip(f"{name} was not recorded")
         return np.array([_mean(self.signals[name][part]) for part in one_by_one(self.slices)])
@@ -221,7 +221,7 @@ class RunSubject:
         return typical
 
     def unloaded_levels(self, name: str) -> list[float]:
-        """Median of a signal in each unloaded rest, in temporal order.
+        """Return the median of a signal in each unloaded rest, in temporal order.
 
         A rest is unloaded if the normal force is below a tenth of its mean over the segments for at
         least 20 samples outside the segments. The load ramp may begin in it, hence the median.
@@ -237,7 +237,7 @@ class RunSubject:
         return [float(median_of_known(part)) for part in parts if np.isfinite(part).any()]
 
     def speed_of(self, number: int) -> float:
-        """Sliding speed of a segment [m/s]."""
+        """Return the sliding speed of a segment [m/s]."""
         return float(self.segments["sliding_speed"].values[number])
 
     def segment_label(self, number: int) -> str:
@@ -277,7 +277,7 @@ class RunSubject:
         return np.where(self.oscillates_strongly(least), self.slip["periods"].values, np.nan)
 
     def oscillates_strongly(self, least: float) -> np.ndarray:
-        """Mask of segments where friction varies by more than a share of typical friction."""
+        """Return a mask of segments with variations above a share of typical friction."""
         name = self.required_friction_signal
         return self.segment_stds(name) > least * self.typical_friction
 
@@ -318,7 +318,7 @@ class RunSubject:
         return "" if unit == "1" else unit
 
     def noise(self, name: str) -> float:
-        """Sample-to-sample noise of a signal, in its unit."""
+        """Return the sample-to-sample noise of a signal, in its unit."""
         return noise_level(self.signals[name])
 
 

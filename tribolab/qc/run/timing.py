@@ -89,7 +89,7 @@ def time_gaps(
 
 
 def _late_intervals(time: np.ndarray, start: int, stop: int, longest: float) -> np.ndarray:
-    """Mask of intervals from `start` to `stop` that are longer than those around them."""
+    """Return a mask of intervals from `start` to `stop` that are longer than those around them."""
     count = time.size - 1
     low, high = max(start - 3, 0), min(stop + 3, count)
     interval = np.diff(time[low : high + 1])
@@ -102,12 +102,12 @@ def _late_intervals(time: np.ndarray, start: int, stop: int, longest: float) -> 
 
 
 def _middle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Median of three arrays, element by element."""
+    """Return the median of three arrays, element by element."""
     return np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c))
 
 
 def lost_time(time: np.ndarray, flags: np.ndarray) -> float:
-    """Share of the record's duration [1] that is lost in gaps."""
+    """Return the share of the record's duration [1] that is lost in gaps."""
     return float(lengths_of_gaps(time, flags).sum() / (time[-1] - time[0]))
 
 
@@ -160,7 +160,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
 
 
 def _odd(time: np.ndarray) -> np.ndarray:
-    """Relative change of the interval at each sample except the first and last."""
+    """Return the relative change of the interval at each sample except the first and last."""
     interval = np.diff(time)
     both = interval[1:] + interval[:-1]
     return np.abs(np.diff(interval)) / np.where(both > 0, both / 2, np.inf)
@@ -204,7 +204,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
 
 
 def _least_mean(interval: np.ndarray, factor: float) -> float:
-    """Smallest mean interval of equal numbers of rows; 0 if all are equal."""
+    """Return the smallest mean interval of equal numbers of rows; 0 if all are equal."""
     parts = min(_PARTS, interval.size // 8)
     if parts < 2:
         return 0.0
@@ -214,7 +214,7 @@ def _least_mean(interval: np.ndarray, factor: float) -> float:
 
 
 def _least_of_slow(interval: np.ndarray, factor: float) -> float:
-    """Usual interval if some of equally long periods have far fewer rows than others, else 0.
+    """Return the usual interval if equal periods have very different numbers of rows, else 0.
 
     A slow rate has few rows and would be missed among equal numbers of rows.
     """

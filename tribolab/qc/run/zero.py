@@ -24,7 +24,7 @@ def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[
 
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
-    """Results for each doubt about the zero, without flags on samples."""
+    """Return results for each doubt about the zero, without flags on samples."""
     doubts: list[Doubt] = list(subject.friction.attrs.get("zero_doubts", []))
     results = []
     for doubt in doubts:

@@ -23,7 +23,7 @@ _SLOPE_OF_NOISE = float(np.sqrt(2 * (45**2 + 9**2 + 1)) / 60)
 
 
 def _rq(profile: xr.Dataset) -> float:
-    """Rq [m] of a profile without form; Pq if it is too short for a cut-off."""
+    """Return Rq [m] of a profile without form; Pq if it is too short for a cut-off."""
     try:
         return float(roughness_parameters(profile).Rq)
     except AnalysisError:

@@ -22,7 +22,7 @@ _TRIM = 20  # points that may share an end of the range with one outlier
 
 
 def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int) -> np.ndarray:
-    """Mask of the few peaks or valleys far above all others: dust, scratches, pores.
+    """Return a mask of the few peaks or valleys far above all others: dust, scratches, pores.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int
 
 
 def _baseline(height: np.ndarray) -> np.ndarray:
-    """Baseline through the medians of blocks."""
+    """Return the baseline through the medians of blocks."""
     sizes = [max(8, -(-points // _BLOCKS[height.ndim])) for points in height.shape]
     counts = [max(1, points // size) for points, size in zip(height.shape, sizes, strict=True)]
     if min(counts) < 2:
@@ -162,7 +162,7 @@ def _line_scatter(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_white(spread: np.ndarray, noise: np.ndarray) -> np.ndarray:
-    """Whether neighbours differ like independent heights (von Neumann's ratio of 2, minus 40 %)."""
+    """Return whether neighbours differ like independent heights (von Neumann's ratio)."""
     return np.asarray(noise**2 >= 0.6 * spread**2)
 
 
@@ -179,7 +179,7 @@ def _widen(height: np.ndarray, first: int, last: int, near: float) -> tuple[int,
 
 
 def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
-    """Mask of points clipped at an end of the range, with the noise of the gauge.
+    """Return a mask of points clipped at an end of the range, with the noise of the gauge.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
 
 
 def longest_run(marked: np.ndarray) -> int:
-    """Length of the longest run of True.
+    """Return the length of the longest run of True.
 
     Examples
     --------
@@ -238,7 +238,7 @@ def longest_run(marked: np.ndarray) -> int:
 
 
 def _white_within(values: np.ndarray, marked: np.ndarray) -> bool:
-    """Whether the marked values scatter about one level like independent readings."""
+    """Return whether the marked values scatter about one level like independent readings."""
     both = marked[1:] & marked[:-1]
     if both.sum() < 8:
         return False

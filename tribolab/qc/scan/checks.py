@@ -171,7 +171,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
 
 
 def _most_missing(subject: ScanSubject) -> float:
-    """Largest share of missing heights among the maps or profiles."""
+    """Return the largest share of missing heights among the maps or profiles."""
     missing = ~np.isfinite(subject.rows)
     return float(missing.mean() if subject.is_map else missing.mean(axis=1).max())
 

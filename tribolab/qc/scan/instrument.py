@@ -125,7 +125,7 @@ def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], floa
 
 
 def _computed_roughness(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
-    """Roughness as the instrument may have computed it: filtered (either cut-off) or levelled."""
+    """Return possible roughness values of the instrument: filtered (either cut-off) or levelled."""
     parameters = []
     for cutoff in ("auto", None) if np.isnan(cut) else (cut, None):
         try:

@@ -41,8 +41,8 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     height
         Heights of one profile [m] (x); NaN if missing.
     factor
-        Smallest jump, in robust standard deviations of the differences between neighbours of the
-        block of 512 points around (and of the quieter three quarters of the profile).
+        Smallest jump, in robust standard deviations of the differences between neighbours in the
+        surrounding 512 points (and in the quieter three quarters of the profile).
 
     Returns
     -------
@@ -96,7 +96,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
 
 
 def _spread(values: np.ndarray, middle: float) -> float:
-    """Robust standard deviation of differences; without the zeros if most are zero.
+    """Return the robust standard deviation of differences; without the zeros if most are zero.
 
     A gauge with coarse digits, or one read out too fast, repeats the same height for some points.
     """
@@ -201,14 +201,14 @@ def odd_one_out(
     Returns
     -------
     tuple of int and float
-        Number of the repeat that is farthest off (-1: they agree) and its largest deviation from
-        the others' median, as a factor (above 1).
+        Number of the outlying repeat (-1: none) and its largest deviation from the others' median,
+        as a factor (above 1).
 
     Notes
     -----
     The logarithm of a mean of n independent spectral values scatters by sqrt(1/n). The others'
-    median has about 1.5 / (repeats - 1) of that variance. With two repeats that differ nobody can
-    say which is wrong: the one with more power is named.
+    median has about 1.5 / (repeats - 1) of that variance. If two repeats differ, the outlier is
+    unknown: the one with more power is named.
     """
     repeats = len(logs)
     if repeats < 2:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def budget_rows(curve: xr.Dataset, known: Mapping[str, Known]) -> Iterator[Row]:
-    """Parts of the uncertainty of each point of a curve, largest first.
+    """Yield the parts of the uncertainty of each point of a curve, largest first.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ class JointRecord(HasStatus):
     Parameters
     ----------
     name
-        Of the fit and of its data file.
+        Name of the fit and of its data file.
     surface, medium
         Surface and medium; several surfaces are joined by "and".
     curves
@@ -106,7 +106,7 @@ class JointRecord(HasStatus):
 
 
 def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
-    """Posterior of each parameter of a fit, one row each."""
+    """Return the posterior of each parameter of a fit, one row each."""
     # imported late for a quick start
     from tribolab.fit.joint.result import in_words
 
@@ -129,7 +129,7 @@ def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
 
 
 def correlation_rows(fit: JointFit) -> tuple[JointCorrelation, ...]:
-    """Correlation of every two parameters, one row each."""
+    """Return the correlation of every two parameters, one row each."""
     names = [" of ".join(filter(None, (m.name, m.surface))) for m in fit.marginals]
     size = len(fit.correlation)
     return tuple(
@@ -140,7 +140,7 @@ def correlation_rows(fit: JointFit) -> tuple[JointCorrelation, ...]:
 
 
 def model_rows_of_comparison(comparison: ModelComparison) -> tuple[JointModelRow, ...]:
-    """Evidence for each model, one row each."""
+    """Return evidence for each model, one row each."""
     return tuple(
         JointModelRow(
             model=model.name,

@@ -27,13 +27,13 @@ class ModeRecord:
     curve
         Name of the measured curve; "" if the mode could not be assessed.
     condition
-        Its surface, medium and load in words.
+        Surface, medium and load in words.
     verdict, text, paragraph, decide
         See `tribolab.regime.verdict.SlidingMode`.
     evidence
         Evidence for the verdict.
     numbers
-        By name, with their unit in it.
+        Numbers by name, with the unit in the name.
     segments, segments_oscillating
         Number examined, and number that oscillate.
     scaling, scaling_exponent, scaling_error

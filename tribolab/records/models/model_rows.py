@@ -59,7 +59,7 @@ def model_rows(
     normal_force: float,
     adhesion: xr.Dataset | None,
 ) -> ModelRows:
-    """Rows of a model from the groups of its data file.
+    """Return rows of a model from the groups of its data file.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def model_rows(
 
 
 def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float) -> float | None:
-    """Ratio of the real contact areas, dry and in the medium, at equal load; None if unknown."""
+    """Return the ratio of the real contact areas, dry over in the medium; None if unknown."""
     if adhesion is None:
         return None
     dry = [name for name in adhesion.medium.values.tolist() if is_dry(name)]

@@ -17,19 +17,19 @@ _UNLIKELY = 0.05  # p value below which the order of the residuals' signs is sig
 _LARGE = 0.10  # share of the measured friction that any reader notices
 _CLOSE = 0.02  # share of the curve's peak
 _FAR = 0.3
-_APART = 2.0  # as a factor; a larger one is not called described
+_APART = 2.0  # as a factor; beyond it the model does not describe the curve
 _BEYOND = 3.0  # standard errors
 _NOT_DESCRIBED = "the model does not describe this curve"
 _NO_STRESS = "no shear stress describes this curve"
 
 
 def has_shear_stress(fit: xr.Dataset) -> bool:
-    """Whether the fit found a positive shear stress."""
+    """Return whether the fit found a positive shear stress."""
     return bool(fit.attrs["shear_stress_Pa"] > 0)
 
 
 def stress_interval(low: float | None, high: float | None) -> str:
-    """95 % interval [Pa] of a shear stress in MPa, never negative.
+    """Return the 95 % interval [Pa] of a shear stress in MPa, never negative.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def stress_interval(low: float | None, high: float | None) -> str:
 
 
 def shear_stress_u95(fit: Mapping[str, Any], error: float) -> float:
-    """U95 [Pa] of a shear stress, or of a quantity computed from it, from its standard error.
+    """Return U95 [Pa] of a shear stress, or of a quantity from it, from its standard error.
 
     The coverage factor is that of the fitted stress: the wider half of its 95 % interval over its
     standard error; 1.96 without an interval.
@@ -63,7 +63,7 @@ def shear_stress_u95(fit: Mapping[str, Any], error: float) -> float:
 
 
 def is_described(words: str) -> bool:
-    """Whether a `judgement` states that the model describes the curve.
+    """Return whether a `judgement` states that the model describes the curve.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def is_described(words: str) -> bool:
 
 
 def judgement(fit: xr.Dataset) -> str:
-    """Sentence on how well one shear stress describes the measured curve.
+    """Return a sentence on how well one shear stress describes the measured curve.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def judgement(fit: xr.Dataset) -> str:
 
 
 def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
-    """Text on the speeds [m/s] at which a condition is true."""
+    """Return a text on the speeds [m/s] at which a condition is true."""
     ends = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int)))
     words = []
     for first, beyond in ends.reshape(-1, 2):
@@ -135,7 +135,7 @@ def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
 
 
 def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
-    """Text on the agreement, and on systematic residuals.
+    """Return a text on the agreement, and on systematic residuals.
 
     The largest residual is a share of the peak friction or, at low friction, a factor.
     """

@@ -23,7 +23,7 @@ _NOT_APPLIED = "not applied: the run failed"
 def decision_rows(
     friction: xr.Dataset, as_found: xr.Dataset, checks: Sequence[Mapping[str, Any]]
 ) -> tuple[DecisionRow, ...]:
-    """Decisions on a run and their consequences, a row for each.
+    """Return decisions on a run and their consequences, a row for each.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def unapplied_decisions(decisions: Iterable[Decision]) -> tuple[DecisionRow, ...
 
 
 def decision_notices(run: str, rows: Sequence[DecisionRow]) -> list[Notice]:
-    """Notices for the reader on the decisions on a run."""
+    """Return notices for the reader on the decisions on a run."""
     return [
         Notice(
             "note",
@@ -101,7 +101,7 @@ def _accepted_checks(decision: Mapping[str, Any], checks: Sequence[Mapping[str, 
 
 
 def _mean(friction: xr.Dataset, numbers: Sequence[int]) -> float | None:
-    """Mean friction coefficient of the segments that are not rejected."""
+    """Return the mean friction coefficient of the segments that are not rejected."""
     if "friction_coefficient" not in friction:
         return None
     out = rejected(friction)

@@ -131,7 +131,7 @@ def notices_of(
 
 
 def _remarks(friction: xr.Dataset) -> list[str]:
-    """Remarks on single segments; those that differ only by numbers appear once."""
+    """Return remarks on single segments; those that differ only by numbers appear once."""
     if "remark" not in friction:
         return []
     alike: dict[str, list[tuple[int, str]]] = {}
@@ -155,7 +155,7 @@ def _of_check(name: str, row: Mapping[str, Any]) -> Notice:
 
 
 def distance_to_critical(slip: xr.Dataset) -> str:
-    """Text on the ratio of the stated rig stiffness to the critical one; "" if not stated.
+    """Return a text on the ratio of the stated rig stiffness to the critical one; "" if not stated.
 
     Parameters
     ----------

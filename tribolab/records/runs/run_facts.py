@@ -50,7 +50,7 @@ def facts_of(
     run, segments, friction, slip
         The run with the flags and the findings of its checks (time), and its results (segment).
     as_found
-        Its friction without a person's decisions, if there are any.
+        Friction without a person's decisions, if any.
     """
     decided = () if as_found is None else decision_rows(friction, as_found, findings_of(run))
     return replace(
@@ -66,7 +66,7 @@ def facts_of(
 
 
 def position_range(segments: xr.Dataset) -> tuple[float, float] | None:
-    """Part of the track that is used [m], if the campaign file states one."""
+    """Return the used part of the track [m], if the campaign file states one."""
     low, high = (segments.attrs.get(f"position_{end}_m") for end in ("low", "high"))
     return None if low is None or high is None else (float(low), float(high))
 
@@ -123,7 +123,7 @@ _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
 
 
 def friction_facts(friction: xr.Dataset) -> RunFacts:
-    """Facts from a run's friction; the other facts have their defaults.
+    """Return facts from a run's friction; the other facts have their defaults.
 
     Rejected segments are ignored, unless all are rejected.
     """
@@ -288,7 +288,7 @@ class _Strokes(NamedTuple):
 
 
 def _highlights(strokes: _Strokes) -> list[Highlight]:
-    """Mean over the strokes at the lowest, the middle and the highest speed."""
+    """Return the mean over the strokes at the lowest, the middle and the highest speed."""
     u95 = np.where(np.isfinite(strokes.u95), strokes.u95, NORMAL * strokes.sem)
     speed, known = strokes.speed, np.isfinite(strokes.value)
     if not (known & (speed > 0)).any():  # one group of all strokes

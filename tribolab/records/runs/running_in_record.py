@@ -129,7 +129,7 @@ def _verb(before: float | None, after: float | None) -> str:
 
 
 def length_text(metres: float | None) -> str:
-    """Sliding distance as text.
+    """Return a sliding distance as text.
 
     Examples
     --------

@@ -110,9 +110,9 @@ def decimated_trace(
     run, segments, friction
         A run (time) and its results (segment).
     points
-        About so many points of each signal are kept. Half of them are the extremes of equal
-        parts of the record, half those of equal parts of each segment, so that a fast stroke
-        can be zoomed into as a slow one can.
+        Approximate number of points of each signal. Half of them are the extremes of equal parts of
+        the record, half those of equal parts of each segment, so that fast strokes can be zoomed
+        like slow ones.
     shared
         Data of the run already computed.
 
@@ -146,7 +146,7 @@ def finer_trace(
     size: int,
     shared: SharedTrace | None = None,
 ) -> str:
-    """Signals of a run with as many points as fit, for zooming on the page.
+    """Return the signals of a run with as many points as fit, for zooming on the page.
 
     Parameters
     ----------
@@ -155,14 +155,14 @@ def finer_trace(
     points
         Points of the trace shown on opening; a finer trace needs more.
     size
-        Length of the text [characters]; there are fewer points until it is met.
+        Largest length of the text [characters]; the number of points is reduced to meet it.
     shared
         Data of the run already computed.
 
     Returns
     -------
     str
-        ``complete`` and ``signals`` as of `decimated_trace`, compressed, as JSON that may stand in
+        ``complete`` and ``signals`` as from `decimated_trace`, compressed, as JSON that is safe in
         a script element; "" if that trace is complete or no finer one fits.
     """
     shared = shared or shared_trace(run, friction)
@@ -210,7 +210,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: SharedTrace, points:
 
 
 def _varies(values: np.ndarray) -> bool:
-    """Whether a signal has more than one value, ignoring gaps."""
+    """Return whether a signal has more than one value, ignoring gaps."""
     return bool(np.fmax.reduce(values) > np.fmin.reduce(values))
 
 
@@ -308,6 +308,6 @@ def _checks(run: xr.Dataset, name: str, tests: np.ndarray) -> tuple[str, ...]:
 
 
 def script_json(data: Any) -> str:
-    """JSON text that is safe in a script element."""
+    """Return JSON text that is safe in a script element."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

@@ -17,7 +17,7 @@ def undecided_segments(change: np.ndarray, chance: np.ndarray, samples: np.ndarr
 
 
 def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[float, str]]:
-    """Trend of each segment as a number for sorting and a text.
+    """Return the trend of each segment as a number for sorting and a text.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[
 
 
 def undecided_trends(runs: Iterable[tuple[str, Sequence[Mapping[str, Any]], str]]) -> str:
-    """Text on the number of segments with an undecided trend, and the largest; else "".
+    """Return a text on the number of undecided trends, and the largest; else "".
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ tell drift from noise'
 def _trends(
     rows: Sequence[Mapping[str, Any]], quantity: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Relative change of friction, p value, and mask of undecided trends."""
+    """Return the relative change of friction, p value, and mask of undecided trends."""
 
     def column(name: str) -> np.ndarray:
         return np.array([np.nan if (v := row.get(name)) is None else v for row in rows], float)

@@ -19,14 +19,14 @@ _SIGMAS = 2.0  # standard errors by which an exponent must exceed 1
 
 
 def is_steep(hurst: float | None, error: float | None = None) -> bool:
-    """Whether a Hurst exponent exceeds 1 significantly."""
+    """Return whether a Hurst exponent exceeds 1 significantly."""
     if hurst is None or not math.isfinite(hurst):
         return False
     return hurst - _SIGMAS * _known(error) > 1
 
 
 def hurst_verdict(hurst: float | None, error: float | None = None) -> str:
-    """Text on an exponent at or above 1; "" between 0 and 1.
+    """Return a text on an exponent at or above 1; "" between 0 and 1.
 
     Parameters
     ----------

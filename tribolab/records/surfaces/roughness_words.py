@@ -43,7 +43,7 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
 
 
 def hardly_bends(radius: float, length: float | None, roughness: float | None) -> bool:
-    """Whether the sag of a circle [m] over a length [m] is far below the heights' Pq [m].
+    """Return whether the sag of a circle [m] over a length [m] is far below Pq [m].
 
     >>> hardly_bends(400.0, 4e-3, 1e-6), hardly_bends(0.07, 4e-3, 1e-6)
     (True, False)
@@ -54,7 +54,7 @@ def hardly_bends(radius: float, length: float | None, roughness: float | None) -
 
 
 def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
-    """Rq and Ra of surfaces, Sq and Sa of maps, a line for each form and cut-off.
+    """Return text lines of Rq and Ra, or Sq and Sa, for each form and cut-off.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
 
 
 def roughness_u95(row: Row, name: str) -> float:
-    """U95 [m] of a roughness parameter; 0 if its error is unknown.
+    """Return U95 [m] of a roughness parameter; 0 if its error is unknown.
 
     From Student's t over the scans or, for a single profile, its sampling lengths; the error due to
     missing heights if larger.

@@ -57,14 +57,14 @@ ADHESION = [
 
 
 def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> SurfaceRows:
-    """Rows of a surface from the groups of its data file.
+    """Return the rows of a surface from the groups of its data file.
 
     Parameters
     ----------
     name
         Name of the surface.
     groups
-        ``roughness``; where there: ``psd``, ``contact``, ``loads``, ``line``, ``rubber``,
+        ``roughness``; if present: ``psd``, ``contact``, ``loads``, ``line``, ``rubber``,
         ``adhesion_loads``.
     quality
         Worst status of the checks on its scans.
@@ -119,7 +119,7 @@ def _error_of_mean(error: xr.DataArray) -> float:
 
 
 def _contact(groups: Mapping[str, xr.Dataset]) -> list[Row]:
-    """Rows of contact results, per load or else per pressure."""
+    """Return rows of contact results, per load or else per pressure."""
     if "contact" not in groups:
         return []
     if "loads" not in groups:
@@ -162,7 +162,7 @@ def _adhesion(groups: Mapping[str, xr.Dataset]) -> list[Row]:
 
 
 def _rows(data: xr.Dataset, dim: str) -> list[Row]:
-    """Rows of the variables over one dimension, with names of the tables' columns."""
+    """Return rows of the variables over one dimension, with names of the tables' columns."""
     names = [str(name) for name in data.variables if data[name].dims == (dim,)]
     values = {column(name): data[name].values.tolist() for name in names}
     return [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]

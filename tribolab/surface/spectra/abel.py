@@ -27,10 +27,10 @@ class PowerLaws:
         ``d ln C_1D / d ln k`` in each bin (bin).
     slope_weights
         Derivative of `slope` by the logarithms of the bins' powers (bin, bin); without it the
-        slopes are taken as known.
+        slopes are exact.
     tail
-        Weights of the bins' logarithms in the slope of the tail, ``sum(weights * ln power)``
-        plus `tail_offset`; by default the last bin's slope goes on.
+        Weights of the bins' logarithms in the slope of the tail, ``sum(weights * ln power)`` plus
+        `tail_offset`; by default the slope of the last bin.
     tail_offset
         See `tail`.
     """
@@ -93,14 +93,14 @@ class Annuli:
 
 
 def power_laws_between(wavenumber: ArrayLike, psd_1d: ArrayLike) -> PowerLaws:
-    """Power laws between the nodes of a two-sided C_1D [m3], continuous at the nodes."""
+    """Return the power laws between the nodes of a two-sided C_1D [m3], continuous at the nodes."""
     k, c = np.asarray(wavenumber, dtype=float), np.asarray(psd_1d, dtype=float)
     slope = np.diff(np.log(c)) / np.diff(np.log(k))
     return PowerLaws(k, 2 * bin_integrals(k, c, 0), slope)
 
 
 def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
-    """Isotropic spectrum, averaged over annuli, from the two-sided spectrum of profiles.
+    """Return the isotropic spectrum, averaged over annuli, from the two-sided spectrum of profiles.
 
     Parameters
     ----------
@@ -121,14 +121,13 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
     Notes
     -----
-    With ``<h^2> = int_{-inf}^{inf} C_1D dk`` the inverse Abel transform
-    ``C(q) = -(1/pi) int_q^inf (dC_1D/dk) / sqrt(k^2 - q^2) dk``, multiplied by ``2 pi q`` and
-    integrated from q to infinity, is ``M(q) = 2 int_q^inf C_1D(k) k / sqrt(k^2 - q^2) dk``: the
-    mean square height above q. It has no derivative in it, only positive terms, and M(0) is the
-    whole variance, so differences of M keep Parseval's relation whatever the bins are. C_1D is
-    constant below the first bin and a power law above the last. The substitution
-    ``k = q cosh(t)`` removes the singularity; each bin is integrated by 20 Gauss points, the
-    tail is an incomplete beta function.
+    With ``<h^2> = int_{-inf}^{inf} C_1D dk`` the inverse Abel transform ``C(q) = -(1/pi) int_q^inf
+    (dC_1D/dk) / sqrt(k^2 - q^2) dk``, multiplied by ``2 pi q`` and integrated from q to infinity,
+    is ``M(q) = 2 int_q^inf C_1D(k) k / sqrt(k^2 - q^2) dk``: the mean square height above q. It
+    contains no derivative, only positive terms, and M(0) is the total variance, so differences of M
+    fulfil Parseval's relation for any bins. C_1D is constant below the first bin and a power law
+    above the last. The substitution ``k = q cosh(t)`` removes the singularity; each bin is
+    integrated by 20 Gauss points, the tail is an incomplete beta function.
 
     Examples
     --------
@@ -170,7 +169,7 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
 
 def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
-    """Contribution of each bin to M(q) (at, bin); the first includes the constant below it."""
+    """Return each bin's contribution to M(q) (at, bin); the first includes the constant below."""
     left = np.concatenate([[0.0], profile.edges[:-1]])
     right, level = profile.edges, np.append(profile.level[:1], profile.level)
     slope = np.append(0.0, profile.slope)
@@ -194,7 +193,7 @@ def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
 def _tail(
     end: float, level: float, exponent: float, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Contribution of the power law above the last bin to M(q), and its exponent derivative."""
+    """Return the contribution of the power law above the last bin to M(q), and its derivative."""
 
     def mean_square(s: float) -> np.ndarray:
         # imported late: scipy loads slowly

@@ -19,7 +19,7 @@ _PLATEAU = 3.0  # an annulus wider than this is the result of a merge
 
 
 def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Confidence band of a mean power from a chi-square with two degrees of freedom per value.
+    """Return the band of a mean power, chi-square with two degrees of freedom per value.
 
     Below one independent value the quantiles approach zero. There the logarithm of the band widens
     with the standard error, starting at the band of one value.
@@ -37,7 +37,7 @@ def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndar
 
 
 def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaws, np.ndarray]:
-    """Bins of a profile's spectrum as power laws with the mean square height of each bin.
+    """Return the bins of a profile's spectrum as power laws with their mean square heights.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaw
     Returns
     -------
     tuple of PowerLaws, PowerLaws and numpy.ndarray
-        The bins, whose tail is fitted over the last half decade; the same of the smooth spectrum
-        behind them, see `smooth`; and the relative standard error of each bin.
+        The bins, whose tail is fitted over the last half decade; the same for the smooth spectrum,
+        see `smooth`; and the relative standard error of each bin.
     """
     q, c = profile.wavenumber.values, profile.psd_1d.values
     power = profile.mean_square_height.values
@@ -82,7 +82,7 @@ def merge_annuli(
     measured
         Annuli with their sensitivities to the bins of C_1D.
     behind
-        Those of the smooth spectrum behind C_1D, over the same edges.
+        Annuli of the smooth spectrum of `smooth`, over the same edges.
     relative
         Relative standard error of C_1D in its bins.
 
@@ -137,7 +137,7 @@ def _merged_annuli(annuli: Annuli, ends: list[int]) -> Annuli:
 def _node_values(
     annuli: Annuli, error: np.ndarray, fitted: FittedLaw
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Value of C at the rms radius of each annulus, from its mean and the local power law.
+    """Return C at the rms radius of each annulus, from its mean and the local power law.
 
     If the lowest annulus was merged from several, it has a node at both ends and one at the
     roll-off, and follows the fitted law; the error of that law is added.
@@ -173,7 +173,7 @@ def _node_values(
 
 
 def _mean_square(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
-    """Mean square height [m2] of the power laws between nodes, extended to the last edge."""
+    """Return the mean square height [m2] of the power laws between nodes, up to the last edge."""
     slope = np.log(c[-1] / c[-2]) / np.log(q[-1] / q[-2])
     grid, value = np.append(q, edges[-1]), np.append(c, c[-1] * (edges[-1] / q[-1]) ** slope)
     if edges[0] < q[0]:
@@ -203,11 +203,11 @@ def _balance_power(
 
 
 def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
-    """Spectrum at nodes, one for each annulus, with its band.
+    """Return the spectrum at nodes, one for each annulus, with its band.
 
     The mean square height of the power laws between nodes differs from that of the annuli by a few
-    per cent, mostly near the roll-off. The difference is spread over all nodes, most to the least
-    certain ones.
+    per cent, mostly near the roll-off. The difference is distributed over all nodes, mostly to the
+    least certain ones.
     """
     q, c, error = _node_values(annuli, error, fitted)
     whole = float(annuli.power.sum())

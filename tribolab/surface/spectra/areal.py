@@ -26,7 +26,7 @@ _MIN_POINTS_OF_SIDE = 16
 
 
 def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
-    """Mean power of windowed maps (scan, y, x) at the lines of half a plane, and mean square."""
+    """Return the mean power of windowed maps (scan, y, x) in a half plane, and mean square."""
     rows, columns = maps.shape[-2:]
     power, square = np.zeros((rows, columns // 2 + 1)), 0.0
     for heights in maps:  # one transform at a time: maps are large
@@ -41,7 +41,7 @@ def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
 def psd_2d_of_map(
     scan: xr.Dataset, *, form: str = "auto", bins_per_decade: float = 12
 ) -> xr.Dataset:
-    """Radially averaged power spectrum of one or several maps of heights.
+    """Return the radially averaged power spectrum of one or several maps of heights.
 
     Parameters
     ----------
@@ -49,18 +49,18 @@ def psd_2d_of_map(
         ``height`` [m] (y, x) or (scan, y, x), evenly spaced. Missing heights (NaN) are bridged,
         and the spectrum is corrected for them.
     form
-        What to take away first: ``"auto"`` (a polynomial of second order unless form was removed
-        before), ``"none"`` (the mean), ``"mean"``, ``"tilt"`` or ``"polynomial"``.
+        Form to remove first: ``"auto"`` (a polynomial of second order unless form was already
+        removed), ``"none"`` (the mean), ``"mean"``, ``"tilt"`` or ``"polynomial"``.
     bins_per_decade
         Width of the annuli.
 
     Returns
     -------
     xarray.Dataset
-        As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to
-        that along x; neither it nor the mean shows the direction of a lay. Spectra of several maps
-        are averaged. If heights are missing, the band includes ``gap_error``, the relative standard
-        error due to the gaps. Wavenumbers above ``gaps_hide_above_1_m``, where gaps took half of
+        As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to that
+        along x; neither it nor the mean shows the direction of a lay. Spectra of several maps are
+        averaged. If heights are missing, the band includes ``gap_error``, the relative standard
+        error due to the gaps. Wavenumbers above ``gaps_hide_above_1_m``, where gaps removed half of
         the power, are left out.
 
     Raises
@@ -125,7 +125,7 @@ def psd_2d_of_map(
         return sums(values) * (scale / lines)
 
     mean = annuli(power)
-    q[0, 0] = 1.0  # of no annulus
+    q[0, 0] = 1.0  # not in any annulus
     node = np.exp(sums(np.log(q)) / lines)
     correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
     independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)

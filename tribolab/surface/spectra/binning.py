@@ -47,9 +47,9 @@ def log_bins(lines: int, lowest: int, per_decade: float, at_least: int = 4) -> B
     lines
         Number of the last line.
     lowest
-        First line that can be trusted; the lines below form one separate bin.
+        First reliable line; the lines below form one separate bin.
     per_decade
-        Bins in a decade where there are lines enough.
+        Bins per decade if there are enough lines.
     at_least
         Smallest number of lines in a bin above `lowest`.
     """
@@ -64,7 +64,7 @@ def log_bins(lines: int, lowest: int, per_decade: float, at_least: int = 4) -> B
 
 
 def window(points: int, flanks: float = 1.0) -> np.ndarray:
-    """Window of unit mean square whose ends rise and fall like a Hann window.
+    """Return a window of unit mean square whose ends rise and fall like a Hann window.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def window(points: int, flanks: float = 1.0) -> np.ndarray:
 
 
 def correlation(shift: float, flanks: float = 1.0) -> float:
-    """Squared correlation of two lines of a windowed transform that are `shift` lines apart.
+    """Return the squared correlation of two windowed Fourier lines, `shift` lines apart.
 
     Notes
     -----
@@ -100,7 +100,7 @@ def correlation(shift: float, flanks: float = 1.0) -> float:
 def shape(
     bins: Bins, slope: np.ndarray, spacing: float, flanks: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Ratio of each bin's mean to its node value, and its number of independent values.
+    """Return the ratio of each bin's mean to its node value, and its number of independent values.
 
     Parameters
     ----------

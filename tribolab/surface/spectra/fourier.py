@@ -20,7 +20,7 @@ class Power(NamedTuple):
 
 
 def fast_length(points: int) -> int:
-    """Smallest multiple of 16, at least `points`, with no prime factor above 5.
+    """Return the smallest multiple of 16, at least `points`, with no prime factor above 5.
 
     Lengths that are merely smooth (50 625 = 15^4) take half as long again per point as those
     with many factors of two.
@@ -59,7 +59,7 @@ def binned_power(
 
     Notes
     -----
-    Scans pass through in chunks, so the memory needed does not grow with their number. Real and
+    Scans are processed in chunks, so that memory does not grow with their number. Real and
     imaginary parts are squared in place and summed as neighbours.
     """
     # imported late: scipy loads slowly

@@ -28,7 +28,7 @@ class Transform(NamedTuple):
     workers: int = 1
 
     def power(self, rows: np.ndarray, taper: np.ndarray) -> np.ndarray:
-        """Power of profiles (scan, x) in each bin, summed over the scans."""
+        """Return the power of profiles (scan, x) in each bin, summed over the scans."""
         return binned_power(rows, taper, self.bins, self.length, self.workers).bins
 
     def first(self, points: int) -> int:
@@ -50,7 +50,7 @@ class PartsSpectrum(NamedTuple):
 
 
 def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) -> GapEffect:
-    """Effect of gaps on the logarithm of the power of bridged profiles.
+    """Return the effect of gaps on the logarithm of the power of bridged profiles.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) 
     missing
         Where heights are missing, like the heights.
     how
-        How the profiles are transformed.
+        Settings of the transform.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) 
 
 
 def long_gaps(missing: np.ndarray) -> np.ndarray:
-    """Mask of gaps that are long compared with the profile, like `missing` (scan, x).
+    """Return a mask of gaps that are long compared with the profile, like `missing` (scan, x).
 
     >>> row = np.zeros((1, 64), bool)
     >>> row[0, [5, 20, 21, 22]] = True
@@ -111,7 +111,7 @@ def long_gaps(missing: np.ndarray) -> np.ndarray:
 
 
 def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> PartsSpectrum | None:
-    """Spectrum of the parts between long gaps, each with its own window.
+    """Return the spectrum of the parts between long gaps, each with its own window.
 
     Parameters
     ----------
@@ -129,15 +129,15 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
 
     Notes
     -----
-    A window that falls to zero at each gap sees no bridge, so no correction is needed for waves
-    that are short compared with the part. As for a whole profile of the part's length, the lowest
-    lines are left out. The powers of one line in two windows ``v`` and ``w`` of unit
-    mean square have the covariance ``<v^2 w^2>`` in units of a bin of many lines; hence the
-    variance of the parts' spectrum about the whole, ``<v^4> + <w^4> - 2 <v^2 w^2>`` over the
-    number of lines [1]_. If the parts of a scan differ by more than this theory of Gaussian
-    heights allows, the error is larger by that factor. Of single profiles with one hole of an
-    eighth, a quarter and a half, 1.96 errors held the whole profile's value in 94, 95 and 96 % of
-    all cases (`tests/benchmarks/gap_coverage.py`, sixty profiles).
+    A window that falls to zero at each gap excludes bridges, so that no correction is needed for
+    waves that are short compared with the part. As for a whole profile of the part's length, the
+    lowest lines are left out. The powers of one line in two windows ``v`` and ``w`` of unit mean
+    square have the covariance ``<v^2 w^2>`` in units of a bin of many lines; hence the variance of
+    the parts' spectrum about the whole, ``<v^4> + <w^4> - 2 <v^2 w^2>`` over the number of lines
+    [1]_. If the parts of a scan differ by more than this theory of Gaussian heights allows, the
+    error is larger by that factor. For single profiles with one hole of an eighth, a quarter and a
+    half, 1.96 errors included the value of the complete profile in 94, 95 and 96 % of cases
+    (`tests/benchmarks/gap_coverage.py`, sixty profiles).
 
     References
     ----------
@@ -173,20 +173,20 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
 
 
 def _stretches(truth: np.ndarray) -> list[tuple[int, int]]:
-    """First index and end of each interval where a mask is true."""
+    """Return the first index and end of each interval where a mask is true."""
     steps = np.diff(np.concatenate([[0], truth.astype(np.int8), [0]]))
     return list(zip(np.flatnonzero(steps > 0), np.flatnonzero(steps < 0), strict=True))
 
 
 def _parts(gaps: np.ndarray) -> list[tuple[int, int]]:
-    """Intervals between gaps, without those that are short compared with the longest."""
+    """Return the intervals between gaps, without those that are short compared with the longest."""
     every = _stretches(~gaps)
     longest = max(stop - start for start, stop in every)
     return [(start, stop) for start, stop in every if stop - start >= _WORTH * longest]
 
 
 def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np.ndarray]:
-    """Window of each part (x), with unit mean square over the whole profile."""
+    """Return the window of each part (x), with unit mean square over the whole profile."""
     scale = np.sqrt(points / sum(stop - start for start, stop in parts))
     tapers = []
     for start, stop in parts:
@@ -197,7 +197,7 @@ def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np
 
 
 def _remove_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarray:
-    """Heights minus the polynomial fitted to one part."""
+    """Return heights minus the polynomial fitted to one part."""
     x = np.linspace(-1.0, 1.0, part[1] - part[0])
     basis = np.polynomial.legendre.legvander(x, order)
     here = row[slice(*part)]
@@ -207,7 +207,7 @@ def _remove_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarr
 
 
 def _unlike(powers: np.ndarray, tapers: np.ndarray, lines: np.ndarray, first: int) -> float:
-    """Factor by which the spectra (part, bin) of parts differ more than for Gaussian heights."""
+    """Return the factor by which spectra (part, bin) of parts differ more than Gaussian heights."""
     known = np.arange(lines.size) >= first
     if len(powers) < 2 or not known.any():
         return 1.0

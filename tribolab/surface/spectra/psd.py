@@ -39,7 +39,7 @@ def psd_1d(
     flanks: float = 0.5,
     workers: int = 1,
 ) -> xr.Dataset:
-    """1D power spectrum of profiles, averaged over the scans, with its 95 % band.
+    """Return the 1D power spectrum of profiles, averaged over the scans, with its 95 % band.
 
     Parameters
     ----------
@@ -50,9 +50,9 @@ def psd_1d(
         Form to remove first, see `remove_form`; ``"auto"`` removes a circle unless form was
         removed before, ``"none"`` only the mean.
     bins_per_decade
-        Width of the bins on the logarithmic axis; at small k a bin holds at least four lines.
+        Width of the bins on the logarithmic axis; at small k a bin contains at least four lines.
     tip_radius
-        Radius of the stylus [m] or text; by default what the scans' file says.
+        Radius of the stylus [m] or text; by default from the scans' file.
     flanks
         Share of the profile over which the window rises and falls as a Hann window does; 1 is
         the Hann window itself.
@@ -72,17 +72,17 @@ def psd_1d(
     ------
     AnalysisError
         If the heights are too few, more than half of a scan's are missing, or those of a scan do
-        not vary but for rounding.
+        not vary except for rounding.
 
     Notes
     -----
-    Two-sided: ``<h^2> = int_{-inf}^{inf} C_1D dk``, twice the integral over positive k. The
-    window has unit mean square. With it neighbouring lines are not independent: a bin of m lines
-    holds about m/1.35 independent values a scan, and with a full Hann window m/1.94. The flanks
-    of the default reach over half of the profile: they suppress leakage as k^-6 like Hann's, and
-    use more of the profile, so that h_rms of three scans of 25 mm scatters a fifth less. A bin's
-    mean is carried to its node along the local power law. The band is that of a chi-square
-    variable with two degrees of freedom for each independent value [1]_.
+    Two-sided: ``<h^2> = int_{-inf}^{inf} C_1D dk``, twice the integral over positive k. The window
+    has unit mean square. It correlates neighbouring lines: a bin of m lines has about m/1.35
+    independent values per scan, and with a full Hann window m/1.94. The default flanks cover half
+    of the profile: they suppress leakage as k^-6 like Hann's, and use more of the profile, so that
+    h_rms of three scans of 25 mm scatters a fifth less. The mean of a bin is converted to its node
+    by the local power law. The band is that of a chi-square variable with two degrees of freedom
+    for each independent value [1]_.
 
     References
     ----------
@@ -166,12 +166,12 @@ def psd_2d(
     bins_per_decade: float = 12,
     tip_radius: str | float | None = None,
 ) -> xr.Dataset:
-    """2D power spectrum of an isotropic surface, with its 95 % band.
+    """Return the 2D power spectrum of an isotropic surface, with its 95 % band.
 
     Parameters
     ----------
     scans
-        Profiles, a map (y, x), maps (scan, y, x), or the 1D spectrum that `psd_1d` gave.
+        Profiles, a map (y, x), maps (scan, y, x), or a 1D spectrum from `psd_1d`.
     form, bins_per_decade, tip_radius
         As for `psd_1d`; from a map a polynomial of second order is removed.
 
@@ -185,7 +185,7 @@ def psd_2d(
     Raises
     ------
     AnalysisError
-        See `psd_1d`; or if the spectrum is too poor for an inverse Abel transform.
+        See `psd_1d`; or if the spectrum is insufficient for an inverse Abel transform.
 
     Notes
     -----

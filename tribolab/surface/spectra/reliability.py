@@ -19,7 +19,7 @@ _GAUSS = np.log(2) / (2 * np.pi) ** 2  # ISO 16610-21: transmission exp(-_GAUSS 
 def tip_cutoff(
     wavenumber: np.ndarray, psd_1d: np.ndarray, widths: np.ndarray, tip_radius: float
 ) -> float:
-    """Wavenumber [1/m] above which a spherical tip no longer follows the profile.
+    """Return the wavenumber [1/m] above which a spherical tip no longer follows the profile.
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ def tip_cutoff(
 
     Notes
     -----
-    ``h''_rms(q)^2 = 2 int_0^q k^4 C_1D dk``: a tip blunts a summit when the summit's curvature is
-    no longer small against its own [1]_. The criterion is a pure number: units play no part.
+    ``h''_rms(q)^2 = 2 int_0^q k^4 C_1D dk``: a tip blunts a summit if the curvature of the summit
+    is not small compared with its own [1]_. The criterion is dimensionless.
 
     References
     ----------
@@ -53,7 +53,7 @@ def tip_cutoff(
 
 
 def noise_cutoff(wavenumber: np.ndarray, psd_1d: np.ndarray) -> float:
-    """Wavenumber [1/m] above which noise dominates the spectrum.
+    """Return the wavenumber [1/m] above which noise dominates the spectrum.
 
     The floor is the median of C_1D near the Nyquist wavenumber, from instrument noise, aliasing or
     quantisation. The spectrum is trusted where it exceeds 20 times the floor.
@@ -77,7 +77,7 @@ def trusted_band(
     spectrum
         ``psd_1d`` (wavenumber) with the edges of its bins.
     scans
-        The scans; their attributes ``tip_radius_m``, ``lambda_c_m`` and ``lambda_s_m`` count.
+        The scans with the attributes ``tip_radius_m``, ``lambda_c_m`` and ``lambda_s_m``, if known.
     tip_radius
         Radius of the tip [m] or text, instead of the scans'.
     lowest

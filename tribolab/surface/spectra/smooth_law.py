@@ -32,7 +32,7 @@ class FittedLaw(NamedTuple):
 
 
 def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarray) -> FittedLaw:
-    """Plateau and power law whose profile spectrum fits a measured C_1D best.
+    """Return the plateau and power law whose profile spectrum fits a measured C_1D best.
 
     Parameters
     ----------
@@ -103,8 +103,8 @@ def smooth(
     Notes
     -----
     The spectrum of the law times the surface's deviation from it, smoothed over some ten bins by
-    Whittaker's smoother [1]_. C_1D of an isotropic surface never rises with k, so neither does
-    the result.
+    Whittaker's smoother [1]_. C_1D of an isotropic surface does not increase with k, and neither
+    does the result.
 
     References
     ----------

@@ -22,7 +22,7 @@ class Tails(NamedTuple):
 
 
 def long_holes(missing: np.ndarray) -> np.ndarray:
-    """Mask of profiles with a sampling length of which more than half is missing.
+    """Return a mask of profiles with a sampling length of which more than half is missing.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def long_holes(missing: np.ndarray) -> np.ndarray:
 
 
 def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
-    """Rsk and Rku from the measured heights, with the error due to the missing ones.
+    """Return Rsk and Rku from the measured heights, with the error due to the missing ones.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
 
 
 def _autocorrelation(height: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """Autocorrelation of profiles at both positive and negative lags (row, lag)."""
+    """Return the autocorrelation of profiles at both positive and negative lags (row, lag)."""
     size = height.shape[-1]
     rows = height.reshape(len(height), -1)
     every = there.reshape(len(there), -1).astype(float)
