@@ -114,3 +114,11 @@ def test_a_point_among_decimal_commas_is_named(tmp_path: Path) -> None:
     with pytest.raises(ReadError, match="'0.030'") as refused:
         tl.read(file)
     assert "quotation" not in str(refused.value)
+
+
+def test_a_position_is_in_the_unit_in_which_it_spans_the_stated_track(tmp_path: Path) -> None:
+    file = tmp_path / "a_20N_b.txt"
+    head = SIX_AXES.replace("\nFx", "\tTrack length [mm]:\t5\nFx").replace("Fz", "Fz\tx-Position")
+    way = 2500 + 2500 * np.sin(2 * np.pi * T / 30)
+    file.write_text(head + rows(np.sign(np.cos(T / 5)), 0.3, -20.3, way))
+    assert np.ptp(tl.read(file).position.values) == pytest.approx(0.005, rel=0.02)

@@ -11,7 +11,7 @@ import regex
 
 from tribolab.core.errors import ReadError, shown
 
-_MAX_PATTERN = 1000  # characters of a pattern
+MAX_PATTERN = 1000  # characters of a pattern
 _SECONDS = 2.0  # time limit for a short text, and for each further _AMOUNT
 _AMOUNT = 1 << 22
 
@@ -42,9 +42,9 @@ class Guarded(Generic[AnyStr]):
     """
 
     def __init__(self, pattern: AnyStr) -> None:
-        if len(pattern) > _MAX_PATTERN:
+        if len(pattern) > MAX_PATTERN:
             raise PatternError(
-                f"it has {len(pattern)} letters, and at most {_MAX_PATTERN} are taken"
+                f"it has {len(pattern)} letters, and at most {MAX_PATTERN} are taken"
             )
         self.pattern: AnyStr = pattern
         try:

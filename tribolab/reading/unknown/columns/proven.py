@@ -20,10 +20,13 @@ from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 from tribolab.reading.unknown.columns.evidence import BOTH_FORCES
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.model import DraftColumn
-from tribolab.units.quantities import QUANTITIES
+from tribolab.units.quantities import QUANTITIES, unit_conversion
 
 _NEAR = 0.1  # of the best score: names that suit a quantity about as well
 _READS_LOAD = 0.1  # of a stated load: controllers keep it so well
+_INNER = (0.02, 0.98)  # quantiles of a position: it may be elsewhere before the test
+_SHORTEST, _LONGEST = 0.6, 1.2  # strokes that a position spans
+_LENGTHS = ("um", "mm", "cm", "m")
 _MOST = 100  # columns: of more, too many may be members of a rule
 _NAMED = ("mass", "turns", "distance", "torque")
 
@@ -84,6 +87,37 @@ def add_unit_of_load(
         else column
         for place, column in enumerate(columns)
     ]
+
+
+def add_unit_of_stroke(
+    columns: Sequence[DraftColumn], numbers: np.ndarray, stroke: Amount | None
+) -> list[DraftColumn]:
+    """Return positions without units in the unit in which they span the stated stroke.
+
+    File: "Track length [mm]: 5" above an x-Position from 0 to 5602 (liampond/EgbertsTribometer).
+
+    Parameters
+    ----------
+    columns, numbers
+        As for `proven`.
+    stroke
+        Length of the strokes as stated by the file.
+    """
+    if stroke is None or stroke.unit is None:
+        return list(columns)
+    length = stroke.number * stroke.scale * unit_conversion(stroke.unit, "position")[0]
+    result = []
+    for place, column in enumerate(columns):
+        name, unit, _ = bare_name(column)
+        options = matches(name, unit) if unit is None else []
+        values = numbers[np.isfinite(numbers[:, place]), place]
+        if options and options[0].quantity == "position" and values.size:
+            low, high = np.quantile(values, _INNER)
+            spans = {u: (high - low) * unit_conversion(u, "position")[0] / length for u in _LENGTHS}
+            unit = next((u for u, s in spans.items() if _SHORTEST < s < _LONGEST), None)
+            column = column._replace(unit=unit, name=column.name or name) if unit else column
+        result.append(column)
+    return result
 
 
 def _force_of(column: DraftColumn) -> str:

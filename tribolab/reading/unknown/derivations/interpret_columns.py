@@ -26,6 +26,7 @@ from tribolab.reading.unknown.columns.names import decide_by_name, says_somethin
 from tribolab.reading.unknown.columns.proven import (
     add_proven_units,
     add_unit_of_load,
+    add_unit_of_stroke,
     proven,
 )
 from tribolab.reading.unknown.columns.results_table import are_points
@@ -52,6 +53,7 @@ from tribolab.reading.unknown.header.profiles import (
 from tribolab.reading.unknown.header.sampling import find_pace, find_sampling
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.header.slip import as_entrainment_speed
+from tribolab.reading.unknown.header.stroke_settings import find_stroke_length
 from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_start_in_doubt
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Kind, Reason, Understood
@@ -109,7 +111,9 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
     columns = in_stated_unit(labelled(layout), unit, along)
     proofs = proven(columns, numbers)
     columns = add_proven_units(columns, proofs)
-    columns = add_unit_of_load(columns, numbers, find_load(numeric_settings(layout)))
+    stated = numeric_settings(layout)
+    columns = add_unit_of_load(columns, numbers, find_load(stated))
+    columns = add_unit_of_stroke(columns, numbers, find_stroke_length(stated))
     profile = _profile_of(layout, columns, numbers, spacing, stated=bool(unit))
     if profile is not None:
         return profile

@@ -123,6 +123,12 @@ def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
     )
 
 
+def find_stroke_length(values: Sequence[Amount]) -> Amount | None:
+    """Return the one length of strokes that the text states without a doubt."""
+    length, _, guess = _stated(values)
+    return None if guess else length
+
+
 def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str]:
     """Return the length and the frequency of strokes as the text has them, and what is guessed."""
     stroke, frequency, guess = _only(values, "stroke", "m"), _only(values, "frequency", "Hz"), ""

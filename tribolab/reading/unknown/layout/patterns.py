@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
 from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.text.bounded_patterns import MAX_PATTERN
 from tribolab.reading.text.first_bytes import HEAD, File
 from tribolab.reading.unknown.layout.header import first_cells
 from tribolab.reading.unknown.layout.lines import Grammar
@@ -38,6 +39,8 @@ def header_pattern(
             for i, line in enumerate(lines)
             if re.match(pattern, line.lstrip() if spaced else line)
         ]
+        if len(pattern) > MAX_PATTERN:  # no dialect takes it
+            continue
         if matched == wanted or (not repeats and matched[:1] == wanted):
             return pattern, repeats
     return None, False

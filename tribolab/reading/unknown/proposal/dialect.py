@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, overload
 
 from pydantic import BaseModel
 
-from tribolab.core.errors import ReadError, TribolabError
+from tribolab.core.errors import ReadError, TribolabError, brief
 from tribolab.reading.dialect.column_rule import Column
 from tribolab.reading.dialect.file_layout import TEXT_CONTAINERS, Header, Text
 from tribolab.reading.dialect.model import Derived, Dialect
@@ -136,7 +136,8 @@ def dialect_of(name: str, described: Described) -> Dialect:
         return Dialect.model_validate({key: said for key, said in content.items() if said})
     except (ValueError, TribolabError) as error:
         raise ReadError(
-            f"the file was understood, but no dialect can say it: {error}", where=layout.file.path
+            f"the file was understood, but no dialect can describe it: {brief(error)}",
+            where=layout.file.path,
         ) from error
 
 
