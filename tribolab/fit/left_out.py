@@ -26,7 +26,7 @@ def left_out(base: Base) -> list[Skipped]:
     a = float(hertz_half_width(load, contact))
     found = []
     if contact.thickness == np.inf:
-        found.append(Skipped("thickness", _of_layers(base, a)))
+        found.append(Skipped("thickness", _layer_text(base, a)))
     if not contact.is_round:
         depth = a**2 / contact.radius
         tilt = limits.LOAD_CHANGE_BY_TILT.value * depth / (contact.force(1.0) / 2)
@@ -60,7 +60,7 @@ def left_out(base: Base) -> list[Skipped]:
     return found
 
 
-def _of_layers(base: Base, a: float) -> str:
+def _layer_text(base: Base, a: float) -> str:
     peak = float(hertz_max_pressure(base.load, base.contact))
     parts = []
     for thickness in _SHEET_THICKNESSES:

@@ -146,7 +146,7 @@ def model_uncertainty(
     if error is None:
         left.append(Skipped("shear stress", "no shear_stress_error was given"))
     elif not refit:
-        fitted_stress, ends = _of_stress(float(error), reference)
+        fitted_stress, ends = _vary_stress(float(error), reference)
         varied.append(fitted_stress)
         mu = np.concatenate([mu, ends[None]])
         fitted = np.concatenate([fitted, np.zeros((1, 2))])
@@ -252,7 +252,7 @@ def _all_ends(
             if end is None:
                 continue
             try:
-                changed = _of_the_same_films(reference, end)
+                changed = _reuse_films(reference, end)
                 if changed is None:
                     changed = coarse.changed(end).solved(start).curve
             except AnalysisError as error:
@@ -272,7 +272,7 @@ def _all_ends(
     return mu, fitted, attributes
 
 
-def _of_the_same_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:
+def _reuse_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:
     """Return the curve of an end that does not change the film, from the reference; else None."""
     if end.keys() == {"area"}:
         return reference.assign(
@@ -304,7 +304,7 @@ def _range(
     return low, high
 
 
-def _of_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarray]:
+def _vary_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarray]:
     """Return the error of the fitted stress as a variation, and mu at its ends, without solving."""
     stress, mu = reference.attrs["shear_stress_Pa"], reference["friction_coefficient"].values
     ends = np.array([max(stress - NORMAL * error, 0.0), stress + NORMAL * error])

@@ -150,7 +150,7 @@ def fit_shear_stress(
     area = np.where(area > least, area, 0.0)
     stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
     dense = model_curve if curve is None or free else curve
-    moved = _moved_by_model(dense, stress, speed, settings.abscissa_error, inputs, free)
+    moved = _model_errors(dense, stress, speed, settings.abscissa_error, inputs, free)
     if moved.size:
         errors = errors.with_part(moved)
         if free:  # least squares with the full covariance
@@ -311,7 +311,7 @@ def _slope(curve: xr.Dataset, stress: float, speed: np.ndarray) -> np.ndarray:
     return np.interp(np.log(speed), place, np.gradient(fluid + stress * area, place))
 
 
-def _moved_by_model(
+def _model_errors(
     curve: xr.Dataset,
     stress: float,
     speed: np.ndarray,

@@ -189,14 +189,14 @@ def variations(base: Base) -> list[Variation | Skipped]:
 
 def held_fixed(base: Base) -> list[Skipped]:
     """Return the unknowns that are not varied."""
-    fixed = {"geometry and load": _as_stated(base)}
+    fixed = {"geometry and load": _stated_text(base)}
     fixed |= dict(_FIXED if base.psd is None else _FIXED + _FIXED_IF_ROUGH)
     if base.psd is not None and base.work_of_adhesion is not None:
         fixed["contact area"] = _WITH_ADHESION
     return [*(Skipped(name, reason) for name, reason in fixed.items()), *left_out(base)]
 
 
-def _as_stated(base: Base) -> str:
+def _stated_text(base: Base) -> str:
     """Return a text on geometry and load without a stated range."""
     stated = {
         "radius": base.radius_range is None,

@@ -111,7 +111,7 @@ def measured_stribeck_curve(
         curve = measured_stribeck_curve(frictions, speed_tolerance, over="sliding_speed", **labels)
         return stamp(curve.rename(sliding_speed=over))
     if labels:
-        return _of_several(frictions, speed_tolerance, labels)
+        return _join_curves(frictions, speed_tolerance, labels)
     if len(frictions) == 0:
         raise AnalysisError("a measured Stribeck curve needs at least one run; none was given")
     for friction in frictions:
@@ -204,7 +204,7 @@ def _as_sliding(friction: xr.Dataset, over: str) -> xr.Dataset:
     return friction.assign(sliding_speed=np.abs(friction[over]))
 
 
-def _of_several(
+def _join_curves(
     frictions: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
 ) -> xr.Dataset:
     """Return the curves of all combinations of labels, joined."""

@@ -25,7 +25,7 @@ Method = Literal["auto", "full", "strips"]
 VAPOUR = -1e5  # Pa: a liquid without gas boils at some 1 bar below ambient pressure
 
 
-def _one_of(name: str, value: str, kind: Any) -> None:
+def _require_known(name: str, value: str, kind: Any) -> None:
     known = list(get_args(kind))
     if value not in known:
         raise AnalysisError(f"{name}: '{shown(value)}' is not known{nearest(value, known)}")
@@ -69,7 +69,7 @@ class Liquid:
         if self.extent is not None:
             set_(self, "extent", to_si(self.extent, "m", name="inlet_length"))
         set_(self, "cavity_pressure", to_si(self.cavity_pressure, "Pa", name="cavity_pressure"))
-        _one_of("outlet", self.outlet, Outlet)
+        _require_known("outlet", self.outlet, Outlet)
         if not -np.inf < self.cavity_pressure < 0:
             raise AnalysisError(
                 "cavity_pressure: a pressure below that outside is wanted, e.g. '-1 bar'; got "
@@ -137,7 +137,7 @@ class Interface:
             object.__setattr__(self, name, value)
             if not -end <= value <= end:
                 raise AnalysisError(f"{name}: {-end:g} to {end:g} is possible; got {value:g}")
-        _one_of("abscissa", self.abscissa, Abscissa)
+        _require_known("abscissa", self.abscissa, Abscissa)
         if self.slide_roll == 0 and self.abscissa == "sliding_speed":
             raise AnalysisError(
                 "slide_roll: nothing slides in pure rolling; state another abscissa"
@@ -188,7 +188,7 @@ class Solver:
     def __post_init__(self) -> None:
         """Raise an error for impossible values."""
         check_area(self.area)
-        _one_of("method", self.method, Method)
+        _require_known("method", self.method, Method)
         if self.cells < 50:
             raise AnalysisError(f"cells: at least 50 are wanted; got {self.cells}")
         if not 0.2 <= self.domain <= 5:

@@ -45,13 +45,13 @@ def dry_state(problem: Problem, contact: LineContact, separation: Separation, lo
     dry = solve_line(load, contact, separation, _START_POINTS)
     x = problem.mesh.x * problem.half_width
     pressure = np.interp(x, dry.x, dry.pressure, left=0.0, right=0.0)
-    shape = _gap_under(problem, pressure / problem.pressure)
+    shape = _gap_shape(problem, pressure / problem.pressure)
     known = np.interp(x, dry.x, dry.separation) / problem.gap
     middle = int(np.argmax(pressure))
     constant = float(known[middle] - shape[middle])
     inside = np.abs(x) <= dry.x[-1]
     film = np.where(inside, known, np.maximum(shape + constant, known))
-    return solve_speed(problem, 0.0, _bent(problem, film, constant)).state
+    return solve_speed(problem, 0.0, _bent_state(problem, film, constant)).state
 
 
 def carried_state(problem: Problem, before: Problem, state: State) -> State:
@@ -59,7 +59,7 @@ def carried_state(problem: Problem, before: Problem, state: State) -> State:
     mesh, old = problem.mesh, before.mesh
     pressure = np.interp(mesh.x, old.x, state.pressure, left=0.0, right=0.0)
     pressure *= problem.load / (mesh.weight @ pressure)
-    shape = _gap_under(problem, pressure)
+    shape = _gap_shape(problem, pressure)
     thinnest = int(np.argmin(state.film))
     constant = float(state.film[thinnest] - np.interp(old.x[thinnest], mesh.x, shape))
     return State(np.maximum(shape + constant, state.film[thinnest] / 2), constant, pressure)
@@ -109,26 +109,26 @@ def wet_state(
         If no solution is found.
     """
     try:
-        return _cushioned(problem, contact, liquid, load, speed)
+        return _solve_cushioned(problem, contact, liquid, load, speed)
     except NotConvergedError:
-        start = _cushioned(problem, contact, liquid, load, 10 * speed)
+        start = _solve_cushioned(problem, contact, liquid, load, 10 * speed)
         solved, lost = _march(problem, liquid.viscosity, [3 * speed, speed], start)
         if lost is not None:
             raise
         return solved[-1].state
 
 
-def _cushioned(
+def _solve_cushioned(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
     """Return the state solved at rest with the auxiliary repulsion, then at the speed."""
     film = thinned_film(contact, liquid, load, speed)
     x = problem.mesh.x * problem.half_width
     pressure = hertz_pressure(x, load, contact) / problem.pressure
-    shape = _gap_under(problem, pressure * problem.load / (problem.mesh.weight @ pressure))
+    shape = _gap_shape(problem, pressure * problem.load / (problem.mesh.weight @ pressure))
     constant = film / 3 / problem.gap - float(shape.min())
     cushion = problem._replace(separation=_Cushion(float(pressure.max()) * problem.pressure, film))
-    rest = solve_speed(cushion, 0.0, _bent(problem, shape + constant, constant)).state
+    rest = solve_speed(cushion, 0.0, _bent_state(problem, shape + constant, constant)).state
     solved, lost = _march(cushion, liquid.viscosity, [speed], rest)
     if lost is not None:
         raise lost
@@ -252,7 +252,7 @@ def _march(
     return solved, None
 
 
-def _bent(problem: Problem, film: np.ndarray, constant: float) -> State:
+def _bent_state(problem: Problem, film: np.ndarray, constant: float) -> State:
     mesh = problem.mesh
     return State(film, constant, mesh.elastic[:, :-1] @ (film - constant - mesh.x**2))
 
@@ -299,7 +299,7 @@ def _extrapolation(at: list[float], aim: float) -> list[float]:
     return [-part, 1 + part]
 
 
-def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
+def _gap_shape(problem: Problem, pressure: np.ndarray) -> np.ndarray:
     mesh = problem.mesh
     return mesh.x**2 + mesh.kernel @ pressure
 

@@ -90,11 +90,11 @@ def system_attributes(system: System) -> dict[str, str | float | int]:
         "area": system.solver.area,
         "work_of_adhesion_J_m2": system.growth.work_of_adhesion if system.growth else 0.0,
         "references": _REFERENCE,
-        **_beyond_default(system),
+        **_special_attributes(system),
     }
 
 
-def _beyond_default(system: System) -> dict[str, str | float | int]:
+def _special_attributes(system: System) -> dict[str, str | float | int]:
     """Return attributes for layers, elastic counter bodies and sealed outlets."""
     contact, liquid, factors = system.contact, system.liquid, system.factors
     balance = factors.roughness_balance

@@ -116,7 +116,7 @@ def liquid_viscosity(
     >>> round(wet.value, 3), round(wet.per_kelvin, 3), round(-wet.per_water / 100, 2)
     (0.872, -0.086, 0.21)
     """
-    name = _named(liquid)
+    name = _require_name(liquid)
     kelvin = to_si(temperature, "K", name="temperature")
     water = to_si(water_content, "1", name="water_content")
     kind = "silicone oil" if name.startswith("silicone") else name
@@ -166,7 +166,7 @@ def _known(liquid: str) -> str | None:
     return None
 
 
-def _named(liquid: str) -> str:
+def _require_name(liquid: str) -> str:
     name = _known(liquid)
     if name is None:
         raise AnalysisError(
@@ -191,7 +191,7 @@ def _silicone_oil(nominal: float, kelvin: float) -> Viscosity:
     """Return the viscosity of a silicone oil of a given grade [mm2/s at 25 degrees Celsius]."""
     from scipy.optimize import brentq  # imported only if an oil is named
 
-    density, falls = _of_grade(nominal)
+    density, falls = _grade_data(nominal)
 
     def kinematic(slope: float, at: float) -> float:
         start = math.log10(math.log10(nominal + 0.7))
@@ -211,7 +211,7 @@ def _silicone_oil(nominal: float, kelvin: float) -> Viscosity:
     return Viscosity(dynamic(kelvin), per_kelvin, 0.0, _FORMULA["silicone oil"])
 
 
-def _of_grade(nominal: float) -> tuple[float, float]:
+def _grade_data(nominal: float) -> tuple[float, float]:
     """Return density relative to water and temperature dependence of viscosity for a grade."""
     for low, high in zip(_OILS, _OILS[1:], strict=False):
         if low[0] <= nominal <= high[0]:

@@ -140,10 +140,10 @@ def combine_parts(
         uncertainty_part_dof=(("part", dim), dof),
         part=("part", np.array(names, dtype=str)),
     )
-    return stamp(result, uncertainty_says=_says(known, names, counted, missing, unstated))
+    return stamp(result, uncertainty_says=_limitations(known, names, counted, missing, unstated))
 
 
-def _says(
+def _limitations(
     known: Mapping[str, Known],
     names: list[str],
     parts: np.ndarray,

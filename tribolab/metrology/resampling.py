@@ -75,7 +75,7 @@ def permutation_test(
     drawn = _largest(*_means_and_squares(about, chosen), terms, rng)
     same = chosen == chosen[0]
     drawn[same.all(axis=1) | ~same.any(axis=1)] = np.inf  # the groups as measured, or exchanged
-    factor = np.sort(drawn)[::-1][_most(level, drawn.size)]
+    factor = np.sort(drawn)[::-1][_allowed_draws(level, drawn.size)]
     return _share_above(drawn, scores), np.full(scores.shape, float(factor))
 
 
@@ -114,12 +114,12 @@ def rotation_test(
     about = np.concatenate([_centre(first), _centre(second)])
     drawn = _smallest(about, counts, terms, turns, seed)
     drawn[0] = 0.0  # the groups as measured
-    bound = float(np.sort(drawn)[_most(level, drawn.size)])
+    bound = float(np.sort(drawn)[_allowed_draws(level, drawn.size)])
     factor = -special.stdtrit(np.minimum(degrees_of_freedom, 1e9), bound / 2)
     return _share_below(drawn, p_values), np.asarray(factor)
 
 
-def _most(level: float, draws: int) -> int:
+def _allowed_draws(level: float, draws: int) -> int:
     """Return the number of draws that may exceed a difference that is still significant."""
     return math.floor(level * draws * (1 + _SAME))
 

@@ -41,7 +41,7 @@ class FindingRow(TypedDict):
     decision: NotRequired[str]
 
 
-def _gravest(statuses: Iterable[str]) -> str:
+def _worst_status(statuses: Iterable[str]) -> str:
     there = {*statuses} - {"skipped"}
     return max(there, key=STATUSES.index, default="skipped")
 
@@ -125,12 +125,12 @@ class Findings:
         If a person decided on the run it is "accepted" or "rejected"; settled objections do not
         count.
         """
-        return self.verdict or _gravest(r.status for _, r in self.results if not r.settled)
+        return self.verdict or _worst_status(r.status for _, r in self.results if not r.settled)
 
     @property
     def status_as_found(self) -> str:
         """Worst status, ignoring the decisions of a person."""
-        return _gravest(result.status for _, result in self.results)
+        return _worst_status(result.status for _, result in self.results)
 
     def count(self) -> Mapping[str, int]:
         """Return the number of results of each status."""

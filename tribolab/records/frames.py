@@ -119,10 +119,10 @@ def friction_columns(friction: xr.Dataset) -> dict[str, np.ndarray]:
     if "steady" in columns:
         steady = [STEADINESS_WORDS.get(value) for value in columns["steady"].tolist()]
         columns["steady"] = np.array(steady, dtype=object)
-    return {"segment": np.arange(1, friction.sizes["segment"] + 1)} | _but("segment", columns)
+    return {"segment": np.arange(1, friction.sizes["segment"] + 1)} | _drop("segment", columns)
 
 
-def _but(name: str, columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _drop(name: str, columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {key: values for key, values in columns.items() if key != name}
 
 
@@ -133,7 +133,7 @@ def curve_table(curve: xr.Dataset) -> pd.DataFrame:
 
 def traction_table(traction: xr.Dataset) -> dict[str, np.ndarray]:
     """Return friction over the slide-roll ratio as columns, a row per point."""
-    return _but("point", columns_of(traction, "point", ["rolling_speed", "slide_roll_ratio"]))
+    return _drop("point", columns_of(traction, "point", ["rolling_speed", "slide_roll_ratio"]))
 
 
 _START = [
@@ -150,7 +150,7 @@ _START = [
 
 def static_friction_columns(starts: xr.Dataset) -> dict[str, np.ndarray]:
     """Return columns of a run's static friction, a row per start, with its segment from 1."""
-    columns = _but("start_of_sliding", columns_of(starts, "start_of_sliding", _START))
+    columns = _drop("start_of_sliding", columns_of(starts, "start_of_sliding", _START))
     return {"segment": starts["start_of_sliding"].values + 1} | columns
 
 
@@ -171,6 +171,6 @@ _FIRST = [
 def stick_slip_columns(slip: xr.Dataset) -> dict[str, np.ndarray]:
     """Return columns of a run's stick-slip, a row per segment, numbered from 1."""
     number = {"segment": np.arange(1, slip.sizes["segment"] + 1)}
-    columns = list(_but("segment", columns_of(slip, "segment", _FIRST)).items())
+    columns = list(_drop("segment", columns_of(slip, "segment", _FIRST)).items())
     probability = slip["class_probability"].max("waveform_class").values
     return number | dict([*columns[:3], ("class_probability", probability), *columns[3:]])

@@ -122,7 +122,7 @@ def viscoelastic_friction(
     valid = examine("viscoelastic_friction", slope=rms_slope(psd), heating=rise)
     if isinstance(modulus, TabulatedModulus):
         other = _solve(speed, over, psd, modulus.continued, *shape_of)
-        valid = together([valid, _outside((friction, touching), other, speed, modulus)])
+        valid = together([valid, _frequency_validity((friction, touching), other, speed, modulus)])
     dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
     return stamp(
         xr.Dataset(
@@ -193,7 +193,7 @@ def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) 
     return np.exp(logs - np.log(free)).reshape(*over.shape, 1, q.size)
 
 
-def _outside(
+def _frequency_validity(
     forces: tuple[np.ndarray, ...],
     other: tuple[np.ndarray, ...],
     speed: xr.DataArray,

@@ -134,7 +134,7 @@ def extrapolate(
             raise
         law, decade, rolloff = _UNKNOWN, (np.nan, np.nan), np.nan
     if high > q[-1]:
-        _refuse_no_surface(law, decade, str(psd.attrs.get("not_self_affine", "")))
+        _refuse_law(law, decade, str(psd.attrs.get("not_self_affine", "")))
     measured = _Part(q, c, _relative_band(psd, c), AS_MEASURED)
     parts = [measured.cut(low, high)]
     if low < q[0]:
@@ -164,7 +164,7 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
-    rough = _is_of_a_surface(law)  # otherwise nothing was extrapolated
+    rough = _is_surface_law(law)  # otherwise nothing was extrapolated
     attrs = {
         **kept,
         "hurst_exponent": law.hurst if rough else float("nan"),
@@ -182,16 +182,16 @@ def extrapolate(
     return stamp(data.assign_attrs(attrs))
 
 
-def _is_of_a_surface(law: PowerLaw) -> bool:
+def _is_surface_law(law: PowerLaw) -> bool:
     """Return whether a rough surface can have this Hurst exponent, within its error."""
     hurst, error = law.hurst, law.hurst_error
     sure = hurst - _NORMAL * error
     return bool(MIN_HURST.value <= hurst <= MAX_FITTED_HURST.value and sure <= MAX_SURE_HURST.value)
 
 
-def _refuse_no_surface(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
+def _refuse_law(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
     """Raise an error if the spectrum falls in a way that no rough surface has."""
-    if _is_of_a_surface(law):
+    if _is_surface_law(law):
         return
     if law.hurst < MIN_HURST.value:
         why = why or "noise, rounded heights, or waves of one length with nothing between them"

@@ -190,7 +190,7 @@ def gap_effect(
     changes, left = [], []
     for _ in range(_TRIALS):
         laid = missing[rng.permutation(len(missing))] if joint else missing
-        gaps, row = _elsewhere(laid, rng, (-2, -1) if is_map else (-1,))
+        gaps, row = _move_gaps(laid, rng, (-2, -1) if is_map else (-1,))
         change = measure(bridge_gaps(height, gaps, is_map=is_map)) - whole
         if own is not None and is_map:  # the row that these gaps belong to
             back = np.broadcast_to(np.argsort(row, axis=-1), change.shape)
@@ -267,7 +267,7 @@ def _window_factors(
     return grow, np.sqrt(np.maximum(ratio, 1.0))
 
 
-def _elsewhere(
+def _move_gaps(
     missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return gaps of each scan, moved and mirrored at random along some axes.

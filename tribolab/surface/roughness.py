@@ -262,11 +262,11 @@ def _correct_gaps(
             data[name] = data[name] - shift
         data[f"{name}_gap_error"] = (data["Ra"].dims, error)
     if not is_map and evaluation.sampling and evaluation.cut:
-        data = _tails_of_holes(data, scans, missing, evaluation)
+        data = _correct_tails(data, scans, missing, evaluation)
     return data
 
 
-def _tails_of_holes(
+def _correct_tails(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
     """Replace Rsk and Rku by those of measured heights if a hole spans half a sampling length."""

@@ -79,11 +79,11 @@ def reciprocal(unit: str) -> Reciprocal | None:
     for form in _FORMS:
         match = form.fullmatch(small)
         if match and match["per"] in _PER:
-            return _of(match["count"] or "", match["per"])
+            return _parse_parts(match["count"] or "", match["per"])
     return None
 
 
-def _of(count: str, per: str) -> Reciprocal | None:
+def _parse_parts(count: str, per: str) -> Reciprocal | None:
     name, scale = count.rstrip("."), 1 / _PER[per]
     if name in ("", "1"):
         return Reciprocal(scale, "bare", _LENGTHS[per])

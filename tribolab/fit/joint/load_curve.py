@@ -93,7 +93,7 @@ def points_of(
         given = whole.get("friction_coefficient")
         several = given is not None and "run" in given.dims  # other variables may have this dim
         runs = [whole.isel(run=k) for k in range(whole.sizes["run"])] if several else [whole]
-        parts += [_of_run(curve.name, run, number, place) for place, run in enumerate(runs)]
+        parts += [_run_points(curve.name, run, number, place) for place, run in enumerate(runs)]
     counts = [part.speed.size for part in parts]
     speed, friction, error, repeats = (
         np.concatenate([getattr(part, name) for part in parts])
@@ -143,7 +143,7 @@ class _Run(NamedTuple):
     run: int
 
 
-def _of_run(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
+def _run_points(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
     """Return the points of a curve that have a speed and a friction."""
     given = measured.get("friction_coefficient")
     if given is None or given.dims != ("sliding_speed",):

@@ -89,8 +89,8 @@ def friction_coefficient(
         direction, so that ordinary friction is positive), ``_std`` (sample standard deviation of
         the pointwise ratio, the error bar of [1]_), ``_sem``, ``_dof`` and ``_U95`` (95 % coverage,
         t_0.975(dof) sem) of this mean over the path, ``friction_coefficient_beyond_sem``, ``_dof``
-        and ``_U95`` of the same number as an estimate for the surface beyond the path (a course
-        along the path may go on), ``friction_coefficient_shared_sem`` (the part of these errors
+        and ``_U95`` of the same number as an estimate for the surface beyond the path (a trend
+        along the path may continue), ``friction_coefficient_shared_sem`` (the part of these errors
         that all segments share: zero and reading of the load, tilt, drag),
         ``friction_coefficient_level`` (without the unfinished period of an oscillation),
         ``effective_samples``, ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``,
@@ -150,7 +150,7 @@ def friction_coefficient(
         raise AnalysisError(f"offset: '{shown(offset)}' is not known{nearest(offset, _OFFSETS)}")
     belong(run, segments)
     settings = Settings(offset, pair_tolerance, zero_uncertainty, rectified, other_zeros)
-    return stamp(compute_both(segments, lambda part: _of_segments(run, part, settings)))
+    return stamp(compute_both(segments, lambda part: _segment_friction(run, part, settings)))
 
 
 def friction_signal(run: xr.Dataset) -> str:
@@ -166,7 +166,7 @@ def friction_signal(run: xr.Dataset) -> str:
     return "friction_force" if "friction_force" in run else ""
 
 
-def _of_segments(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
+def _segment_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     signal = friction_signal(run)
     if signal == "friction_force":
         result = _force_friction(run, segments, settings)
@@ -293,7 +293,7 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
     ratio = (turn * means - signs.sign * zero.value) / held
     stated = run.attrs.get("uncertainty", {})
     both = reversal_of(zero, pair, held, middle, ratio, rests, stated)
-    pointwise: list[_Pointwise] = []
+    pointwise: list[_RatioRemarks] = []
 
     def records() -> Iterator[tuple[np.ndarray, ...]]:
         for i, s in enumerate(one_by_one(parts)):
@@ -385,7 +385,7 @@ class _Turning(NamedTuple):
         return (angle if at is None or whole else np.interp(at, time, angle),)
 
 
-class _Pointwise(NamedTuple):
+class _RatioRemarks(NamedTuple):
     """Remarks on the ratio of one segment: why it is missing, and number of omitted samples."""
 
     missing: str = ""
@@ -407,26 +407,26 @@ def _ratio(
     load: Estimate,
     zero: float,
     usual: float,
-) -> tuple[np.ndarray, np.ndarray, _Pointwise]:
+) -> tuple[np.ndarray, np.ndarray, _RatioRemarks]:
     """Return the times and ratio of one segment, empty without contact; overwrites `force`."""
     known, nothing = np.isfinite(normal), np.zeros(0)
     if load.samples == 0 or normal.size == 0:
         why = "normal force is not a number" if normal.size else "no samples"
-        return nothing, nothing, _Pointwise(why)
+        return nothing, nothing, _RatioRemarks(why)
     noise = limits.UNLOADED_NOISE.value * np.nan_to_num(load.std)
     if not load.mean - zero > max(limits.UNLOADED_SHARE.value * usual, noise, 0.0):
         why = f"no contact: mean normal force {load.mean - zero:.3g} N"
-        return nothing, nothing, _Pointwise(why)
+        return nothing, nothing, _RatioRemarks(why)
     pressed = known & (normal > 0)
     left = normal.size - int(np.count_nonzero(pressed))
     lost = 1 - (normal.size - left) / normal.size
     if lost > MAX_LOST_CONTACT.value:
         why = f"no contact or no normal force in {lost:.0%} of the samples"
-        return nothing, nothing, _Pointwise(why)
+        return nothing, nothing, _RatioRemarks(why)
     if left:
         time, force, normal = time[pressed], force[pressed], normal[pressed]
     del known, pressed
-    return time, np.divide(force, normal, out=force), _Pointwise(left=left)
+    return time, np.divide(force, normal, out=force), _RatioRemarks(left=left)
 
 
 def _ratio_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:

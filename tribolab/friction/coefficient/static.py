@@ -120,7 +120,7 @@ def static_friction(
     belong(run, friction)
     reach = None if within is None else to_si(within, "m", "within")
     rows = [
-        _measured(run, friction, signal, start) for start in _starts(run, segments, friction, reach)
+        _measure(run, friction, signal, start) for start in _starts(run, segments, friction, reach)
     ]
     names = list(_Peak._fields)
     data = {name: np.array([getattr(row, name) for row in rows], float) for name in names}
@@ -167,7 +167,7 @@ def _starts(
     start, trimmed = segments.variables["start"].values, segments.variables["trimmed_start"].values
     stop, speed = segments.variables["stop"].values, segments.variables["sliding_speed"].values
     starts = []
-    slack = _slack(run, friction, start)
+    slack = _starts_slack(run, friction, start)
     for i in range(start.size):
         if slack[i]:
             latest = start[i] + limits.MAX_TIME_OF_RISE.value * (stop[i] - start[i])
@@ -197,7 +197,7 @@ def _starts(
     return starts
 
 
-def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
+def _starts_slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
     """Return whether a segment begins a record or specimen, and still without friction."""
     signal = friction_signal(run)
     time, values = run.variables["time"].values, run.variables[signal].values
@@ -227,7 +227,7 @@ def _rest_duration(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: in
     return float(end[rest] - since)
 
 
-def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start) -> _Peak:
+def _measure(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start) -> _Peak:
     i = start.number
     part = slice(start.first, start.latest)
     time = run.variables["time"].values[part]

@@ -129,7 +129,7 @@ def period_verdict(
         unclaimed
         or (few and abs(np.log(slow.periods / count)) > limits.MAX_DIFFERENCE_OF_PERIODS.value)
     ):
-        return _withheld(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
+        return _undecided(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
     repeats = seen.periods.size > 0 and not odd and seen.kind != SLIP_KINDS[2]
     if (
         kind != CLASSES[0]
@@ -138,31 +138,31 @@ def period_verdict(
     ):
         kind = CLASSES[0]  # neither a line nor repeating drops
     if kind == CLASSES[0] and lines and lines[0].false_alarm < limits.SURE_LINE_BY_CHANCE.value:
-        return _withheld(
+        return _undecided(
             f"no drops repeat, but the spectrum has a line at {lines[0].frequency:.4g} Hz"
         )
     if kind == CLASSES[0]:
         return PeriodVerdict(kind, np.nan, np.nan, np.nan)
     if kind == NOT_CLEAR:
         likely = CLASSES[int(np.argmax(probability))]
-        return _withheld(f"{likely} is more probable, but smooth sliding not improbable")
+        return _undecided(f"{likely} is more probable, but smooth sliding not improbable")
     hum = [
         m.name
         for m in oscillation.mains
         if abs(oscillation.frequency / m.frequency - 1) < limits.MAX_DISTANCE_FROM_MAINS.value
     ]
     if hum:
-        return _withheld(f"the strongest line stands where the mains hums ({hum[0]})")
+        return _undecided(f"the strongest line stands where the mains hums ({hum[0]})")
     if odd and not several:
-        return _withheld(
+        return _undecided(
             f"{AT_ODDS} of {1 / frequency:.3g} s, the drops are {periods.mean():.3g} s apart"
         )
     if kind == CLASSES[2] and (mixed := _mixed(oscillation, lines, form)):
-        return _withheld(mixed)
+        return _undecided(mixed)
     if count < limits.MIN_CYCLES_IN_RECORD.value:
         # slow drift also has a "period"; it counts only if a single wave explains nearly everything
         known = count if slow is not None else np.nan
-        return _withheld(f"only {count:.1f} periods, {_FEW}", known)
+        return _undecided(f"only {count:.1f} periods, {_FEW}", known)
     if (
         not seen.kind
         and significant
@@ -171,11 +171,11 @@ def period_verdict(
     ):
         return PeriodVerdict(kind, frequency, error, count)  # noise hides the drops of a line
     if not seen.kind or (irregular and periods.size < limits.MIN_PERIODS_FOR_SCATTER.value):
-        return _withheld("too few drops repeat to tell the period")
+        return _undecided("too few drops repeat to tell the period")
     trains = seen.kind == SLIP_KINDS[2]  # intermittent trains have lines of their own
     strongest = lines[0].frequency if several and not trains else frequency
     if abs(np.log(frequency / strongest)) > limits.MAX_DIFFERENCE_OF_PERIODS.value:
-        return _withheld(
+        return _undecided(
             f"the drops repeat at {frequency:.4g} Hz, but the oscillation at {strongest:.4g} Hz is "
             "larger: which of them is stick-slip is open"
         )
@@ -218,5 +218,5 @@ def _mixed(oscillation: Oscillation, lines: tuple[Component, ...], form: Wavefor
 _FEW = "too few to separate an oscillation from slow drift: slide further at this speed"
 
 
-def _withheld(why: str, periods: float = np.nan) -> PeriodVerdict:
+def _undecided(why: str, periods: float = np.nan) -> PeriodVerdict:
     return PeriodVerdict(NOT_CLEAR, np.nan, np.nan, periods, why)

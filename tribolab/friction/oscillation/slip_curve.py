@@ -109,7 +109,7 @@ def stick_slip_curve(
     ('medium', 'sliding_speed')
     """
     if labels:
-        return _of_several(slips, speed_tolerance, labels)
+        return _join_curves(slips, speed_tolerance, labels)
     if not slips:
         raise AnalysisError("stick-slip against speed needs at least one run; none was given")
     slips = [kept(slip) for slip in slips]
@@ -152,7 +152,7 @@ _SCALING = {
 }  # attribute of one curve: variable of several curves
 
 
-def _of_several(
+def _join_curves(
     slips: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
 ) -> xr.Dataset:
     """Return the curves of all combinations of labels, joined."""
@@ -224,7 +224,7 @@ def _row(
     waveform, regularity, count = STEADY_SLIDING, "", moving.size
     decided = int((kind[group] != NOT_CLEAR).sum())
     if moving.size > 0.5 * decided:
-        waveform, regularity = _commonest(kind[moving]), _commonest(regular[moving])
+        waveform, regularity = _most_common(kind[moving]), _most_common(regular[moving])
     else:  # few segments are not representative of the contact
         moving = moving[:0]
         waveform = STEADY_SLIDING if decided >= 0.5 * group.size else NOT_CLEAR
@@ -233,7 +233,7 @@ def _row(
         "segments_oscillating": count,
         "waveform": waveform,
         "regularity": regularity,
-        "rig_wave": _commonest(repeats[group][repeats[group] != ""]),
+        "rig_wave": _most_common(repeats[group][repeats[group] != ""]),
     }
     for name in _MEANS:
         values = columns[name][moving]
@@ -246,7 +246,7 @@ def _row(
     return row
 
 
-def _commonest(words: np.ndarray) -> str:
+def _most_common(words: np.ndarray) -> str:
     """Return the most frequent word; the first one of equally frequent words."""
     known = words.astype(str).tolist()
     return max(dict.fromkeys(known), key=known.count, default="")

@@ -48,13 +48,13 @@ def observations_of(frictions: Sequence[xr.Dataset]) -> Observations:
     frictions
         Results of `tribolab.friction_coefficient`, without rejected segments.
     """
-    parts = [_of_run(friction, number) for number, friction in enumerate(frictions)]
+    parts = [_observe_run(friction, number) for number, friction in enumerate(frictions)]
     if not parts:
         return Observations(*(np.zeros(0) for _ in Observations._fields))
     return Observations(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
-def _of_run(friction: xr.Dataset, run: int) -> Observations:
+def _observe_run(friction: xr.Dataset, run: int) -> Observations:
     speed = friction["sliding_speed"].values.astype(float)
     value = friction["friction_coefficient"].values.astype(float)
     blank = np.full(value.size, np.nan)
@@ -188,13 +188,13 @@ def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean
             others = pooled_scatter(values[:number] + values[number + 1 :])
             mean = mean_of_repeats(own, errors, others)
         else:
-            mean = _of_series(own, errors)
+            mean = _series_mean(own, errors)
         sem, u95 = np.hypot((mean.sem, mean.u95), (shared, NORMAL * shared))
         means.append(Mean(mean.mean, float(sem), float(u95)))
     return means
 
 
-def _of_series(values: np.ndarray, errors: np.ndarray) -> Mean:
+def _series_mean(values: np.ndarray, errors: np.ndarray) -> Mean:
     series = error_of_series(values[None])
     sem, dof = float(series.sem[0]), float(series.dof[0])
     wide = sem * (NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975)))

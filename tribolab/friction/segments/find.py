@@ -142,16 +142,16 @@ def find_segments(
 
     source, stands = velocity_source(run), 0.0
     if run.attrs.get("rows_are") == "points":
-        return _of_points(run, source)
+        return _use_points(run, source)
     if stroke_middle is not None:
-        return _of_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
+        return _use_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
     if source == "recorded":
         stretches = from_velocity(run, constancy, gap)
         if "stroke_m" not in run.attrs:
             stretches, stands = without_standstills(run, stretches)
             source = "position" if stands else source
         if "stroke_m" in run.attrs:  # computed without noise: only zero velocity is rest
-            stretches = [_driven(run, stretch) for stretch in stretches]
+            stretches = [_mark_ramp(run, stretch) for stretch in stretches]
     elif source == "position":
         stretches = apart(run, from_position(run, constancy, gap))
     elif source == "step":
@@ -168,18 +168,18 @@ def find_segments(
         plateaus.attrs["standstill_s"] = stands
     by_chance = (
         plateaus.sizes["segment"]
-        and _covered(run, plateaus) < limits.MAX_TIME_OF_CHANCE_PLATEAUS.value
+        and _plateau_share(run, plateaus) < limits.MAX_TIME_OF_CHANCE_PLATEAUS.value
     )
     if position_range is not None or (plateaus.sizes["segment"] and not by_chance):
         return plateaus
     if by_chance and not shuttles(run):
         return plateaus
     if run.attrs.get("rows_are") == "either":
-        return _of_points(run, source)
+        return _use_points(run, source)
     if "stroke_m" not in run.attrs and not shuttles(run):
         return plateaus
     try:  # a crank-driven slider has no constant speed: use the middles of its strokes
-        return _of_strokes(
+        return _use_strokes(
             run,
             source,
             limits.MIDDLE_OF_CRANK_STROKE.value,
@@ -189,14 +189,14 @@ def find_segments(
         return plateaus
 
 
-def _covered(run: xr.Dataset, plateaus: xr.Dataset) -> float:
+def _plateau_share(run: xr.Dataset, plateaus: xr.Dataset) -> float:
     """Return the share of a run's time in plateaus."""
     time = run["time"].values
     lasted = float((plateaus["stop"] - plateaus["start"]).sum())
     return lasted / float(time[-1] - time[0]) if time[-1] > time[0] else 1.0
 
 
-def _of_points(run: xr.Dataset, source: str) -> xr.Dataset:
+def _use_points(run: xr.Dataset, source: str) -> xr.Dataset:
     """Return each row as a segment: a result at one speed, of unknown duration."""
     return measured(run, of_points(run), source, 0.0, None).assign_attrs(rows_are="points")
 
@@ -232,7 +232,7 @@ def why_no_segment(segments: xr.Dataset) -> str:
     return f"no segment: the run never slides at constant speed{detail}"
 
 
-def _driven(run: xr.Dataset, stretch: Stretch) -> Stretch:
+def _mark_ramp(run: xr.Dataset, stretch: Stretch) -> Stretch:
     """Return a rest as a ramp if a crank's stroke within it has a velocity."""
     first, last = np.searchsorted(run["time"].values, (stretch.start, stretch.stop))
     if stretch.kind != "at rest" or not run["sliding_velocity"].values[first : last + 1].any():
@@ -253,7 +253,7 @@ def _share(trim: str | float) -> float:
     return share
 
 
-def _of_strokes(run: xr.Dataset, source: str, share: float, min_samples: int) -> xr.Dataset:
+def _use_strokes(run: xr.Dataset, source: str, share: float, min_samples: int) -> xr.Dataset:
     """Return the middle part of each stroke as a segment."""
     if not 0 < share <= 1:
         raise AnalysisError(

@@ -25,14 +25,14 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
         return 0.0
     off = np.empty(time.size - 2)  # sorted as a whole, not in pieces
     for first, last in pieces(0, off.size):
-        off[first:last] = _off_chord(time[first : last + 2], position[first : last + 2])
+        off[first:last] = _chord_error(time[first : last + 2], position[first : last + 2])
     noise = float(np.median(off, overwrite_input=True) / 0.6745)
     rounding = digit(position) / np.sqrt(12)
     # the median distance of mostly repeated readings is zero
     return max(noise, rounding) or quantum(position) / np.sqrt(12)
 
 
-def _off_chord(time: np.ndarray, position: np.ndarray) -> np.ndarray:
+def _chord_error(time: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Return each reading's distance from the chord of its neighbours, scaled to white noise."""
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     chord = position[:-2] + share * (position[2:] - position[:-2])

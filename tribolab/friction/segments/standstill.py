@@ -57,7 +57,7 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
         share = np.abs(slope / stretch.velocity)
         examined += lasted
         agreeing += lasted * float(np.mean(np.abs(share - 1) < MAX_SPEED_MISFIT.value))
-        begin, end = _standing(share)
+        begin, end = _standstills(share)
         stands += lasted * float((end - begin).sum()) / share.size
         # a block at either end of a standstill may be half moving
         begin, end = np.maximum(begin - 1, 0) * size, (end + 1) * size
@@ -79,7 +79,7 @@ def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> in
     return 0
 
 
-def _standing(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _standstills(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return first and last block of each standstill, from the ratio of both speeds."""
     slow = share < MIN_SHARE_OF_SPEED.value
     edges = np.flatnonzero(np.diff(np.concatenate([[False], slow, [False]])))

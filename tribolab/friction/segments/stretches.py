@@ -103,7 +103,7 @@ def from_velocity(
     pieces, share = locate(time, velocity, constancy), 0.05
     pieces = moving(time, pieces, constancy, velocity)
     pieces = held(MeanVelocities(time, velocity=velocity), pieces, constancy)
-    return _in_time(run, time, pieces, constancy, max_gap, share)
+    return _split_at_gaps(run, time, pieces, constancy, max_gap, share)
 
 
 def from_position(
@@ -120,7 +120,7 @@ def from_position(
     if constancy.rest_speed is None:
         pieces = _mark_dwells(time, pieces, slopes.position_noise(time, position))
     share = 0.25  # a straight line across a pause shows constant speed
-    return _in_time(run, time, pieces, constancy, max_gap, share)
+    return _split_at_gaps(run, time, pieces, constancy, max_gap, share)
 
 
 def _by_slopes(
@@ -205,7 +205,7 @@ def _nothing(run: xr.Dataset, finite: int) -> list[Stretch]:
     return [Stretch(float(time[0]), float(time[-1]), reason, np.nan)]
 
 
-def _in_time(
+def _split_at_gaps(
     run: xr.Dataset,
     time: np.ndarray,
     pieces: list[VelocityPiece],

@@ -166,13 +166,13 @@ def _creep(
     if not abs(change) > limits.MIN_ERRORS_OF_READINGS.value * np.hypot(begins[1], ends[1]):
         return np.zeros(pressed.size)
     lasted = _middle_of_tenth(time[parts[last]], -1) - _middle_of_tenth(time[parts[first]], 1)
-    begin, end = _under_load(normal, 0.5 * float(np.nanmean(normal[parts[first]])))
+    begin, end = _loaded_range(normal, 0.5 * float(np.nanmean(normal[parts[first]])))
     middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     away = np.maximum(middle - time[begin], time[end] - middle)
     return abs(change / lasted) * away / WIDTH_OVER_SIGMA
 
 
-def _under_load(normal: np.ndarray, least: float) -> tuple[int, int]:
+def _loaded_range(normal: np.ndarray, least: float) -> tuple[int, int]:
     """Return the first and the last sample under load."""
     found: list[int] = []
     for a, b in pieces(0, normal.size):

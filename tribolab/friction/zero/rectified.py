@@ -161,11 +161,11 @@ def folded(trace: ForceTrace) -> Fold:
     if any(trace.is_below(trace.parts[i]) for i in one_by_one(np.flatnonzero(known))):
         return SIGNED
     if (known & (trace.sign < 0)).any():
-        return _both_ways(trace, known)
-    return _one_way(trace)
+        return _decide_two_ways(trace, known)
+    return _decide_one_way(trace)
 
 
-def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
+def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
     """Return the decision for recorded directions and a force of one sign."""
     forward, backward = (
         np.flatnonzero(known & (trace.sign * direction > 0)) for direction in (1, -1)
@@ -232,7 +232,7 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
             below += 1
         elif top < bottom:
             # farther from either level than the largest noise among so many readings
-            far = _noise_reaches(turn.size) / _PERCENTILE_WIDTH
+            far = _noise_quantile(turn.size) / _PERCENTILE_WIDTH
             above = (low + top) / 2 + far * (top - low)
             beneath = (bottom + highest) / 2 - far * (highest - bottom)
             on_the_way = int(np.count_nonzero((turn > above) & (turn < beneath)))
@@ -245,12 +245,12 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
     return dips / seen, below / seen, straight / seen, clear / seen, seen
 
 
-def _noise_reaches(count: int) -> float:
+def _noise_quantile(count: int) -> float:
     """Return the standard deviations that the largest of `count` readings exceeds by chance."""
     return float(special.ndtri(1 - limits.NOISE_PASSES.value / count))
 
 
-def _one_way(trace: ForceTrace) -> Fold:
+def _decide_one_way(trace: ForceTrace) -> Fold:
     """Return the decision without recorded direction, if a force touches zero at the reversals."""
     if len(trace.parts) < 2 or anywhere(lambda part: _negative(trace.turned * part), trace.force):
         return SIGNED
@@ -268,7 +268,7 @@ def _one_way(trace: ForceTrace) -> Fold:
         return SIGNED
     # a start at another speed after a standstill does not reverse
     turns = (i for i in range(len(trace.parts) - 1) if trace.alike(i))
-    stops = (_touches(trace, i) for i in turns)
+    stops = (_touches_zero(trace, i) for i in turns)
     touched = [touches for touches in stops if touches is not None]
     dips = sum(touched) / len(touched) if touched else 0.0
     if dips >= limits.MIN_REVERSALS_WITH_DIP.value:
@@ -284,7 +284,7 @@ def _negative(force: np.ndarray) -> np.ndarray:
     return (force < 0) & np.isfinite(force)
 
 
-def _touches(trace: ForceTrace, number: int) -> bool | None:
+def _touches_zero(trace: ForceTrace, number: int) -> bool | None:
     """Return whether the force reaches zero between two strokes, within noise and resolution."""
     turn, stroke = trace.between(number), trace.within(trace.parts[number])
     if turn.size < 3 or stroke.size < 3:

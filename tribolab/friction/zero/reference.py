@@ -74,22 +74,22 @@ def find_reference(
     if not strokes.size:
         return _constant(strokes, 0.0, 0.0, "", "none: no segment")
     if loops is not None:
-        loop = _from_loops(strokes, known, _turned(strokes, known.rests, loops))
+        loop = _loop_zeros(strokes, known, _correct_tilt(strokes, known.rests, loops))
         nothing = loop.half_loop
     if wanted == "none":
         result = _constant(strokes, 0.0, 0.0, "not wanted", "none: not wanted")
     elif wanted == "zero load" and known.rests is not None:
-        result = _from_rests(strokes, known, known.rests)
+        result = _rest_zeros(strokes, known, known.rests)
     elif loops is not None:
-        result = loop if wanted == "half loop" else _checked(strokes, known, loops, loop, fold)
+        result = loop if wanted == "half loop" else _compare(strokes, known, loops, loop, fold)
     elif known.rests is not None:
-        result = _from_rests(strokes, known, known.rests)
+        result = _rest_zeros(strokes, known, known.rests)
     else:
-        result = _from_outside(strokes, known, fold)
+        result = _outside_zero(strokes, known, fold)
     return replace(result, half_loop=nothing)
 
 
-def _turned(strokes: StrokeMeans, rests: Zeros | None, loops: Middles) -> Middles:
+def _correct_tilt(strokes: StrokeMeans, rests: Zeros | None, loops: Middles) -> Middles:
     """Return the middles of the loops corrected for tilt, if they then agree better.
 
     With a tilt the load reads less in one direction and more in the other, in proportion to
@@ -124,7 +124,7 @@ def _constant(
     )
 
 
-def _from_rests(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroReference:
+def _rest_zeros(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroReference:
     value, error = rests.at(strokes.time)
     words = "a rest without load"
     if rests.time.size > 1:
@@ -154,7 +154,7 @@ def _from_rests(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroR
     )
 
 
-def _from_loops(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> ZeroReference:
+def _loop_zeros(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> ZeroReference:
     """Return zeros from the middles of the loops; strokes without a partner use rests, if any."""
     good = np.isfinite(loops.value)
     pair = np.where((strokes.pair >= 0) & good[strokes.pair.clip(0)], strokes.pair, -1)
@@ -186,7 +186,7 @@ def _from_loops(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> Zer
     return ZeroReference(value, slope, error, words, half_loop, "half loop", tuple(doubts))
 
 
-def _checked(
+def _compare(
     strokes: StrokeMeans, known: KnownOfZero, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
     """Compare the middles of the loops with an independent zero.
@@ -196,15 +196,15 @@ def _checked(
     A smaller difference is included in the error.
     """
     if known.rests is not None:
-        other = _from_rests(strokes, known, known.rests)
+        other = _rest_zeros(strokes, known, known.rests)
         value, error = known.rests.at(loops.time)
         by = "the rests without load"
     elif np.isfinite(known.stated):
-        other = _from_outside(strokes, known, Fold("signed", ""))
+        other = _outside_zero(strokes, known, Fold("signed", ""))
         value, error = np.zeros(loops.time.size), np.full(loops.time.size, known.stated)
         by = "the stated zero"
     else:
-        return _ambiguous(strokes, loops, loop, fold)
+        return _doubt_asymmetry(strokes, loops, loop, fold)
     apart = loops.value - value
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     own = np.sqrt(((loops.share * strokes.error[loops.member]) ** 2).sum(axis=1))
@@ -246,7 +246,7 @@ def _checked(
     return replace(other, doubts=doubts)
 
 
-def _ambiguous(
+def _doubt_asymmetry(
     strokes: StrokeMeans, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
     """Return a doubt if offset and asymmetry cannot be separated."""
@@ -276,7 +276,7 @@ def _ambiguous(
     return replace(loop, doubts=(*loop.doubts, remark))
 
 
-def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroReference:
+def _outside_zero(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroReference:
     """Return the zero from outside the run: stated, from other runs, or none."""
     if np.isfinite(known.stated):
         words = f"stated: zero within {known.stated:.3g}{strokes.unit}"

@@ -103,7 +103,7 @@ def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
         the lowest rest by no more than noise, unless the zero drifts: then the load of the strokes
         drifts, too. Rests that read more may be in partial contact.
     """
-    rests = _resting(run, segments, load)
+    rests = _rest_limits(run, segments, load)
     if rests is None:
         return Rests(None, None)
     time, normal, intervals = rests
@@ -197,7 +197,7 @@ def light_rest(
         Normal force of each segment [N]: a rest with the load of one of them is under load
         (segment).
     """
-    rests = _resting(run, segments, load)
+    rests = _rest_limits(run, segments, load)
     if rests is None:
         return None
     time, normal, intervals = rests
@@ -212,7 +212,7 @@ def light_rest(
     return None
 
 
-def _resting(
+def _rest_limits(
     run: xr.Dataset, segments: xr.Dataset, load: float
 ) -> tuple[np.ndarray, np.ndarray, list[tuple[float, float]]] | None:
     """Return time, normal force, and the limits of the rests [s]; None without a load signal."""

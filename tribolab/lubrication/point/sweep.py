@@ -126,19 +126,19 @@ def solve_points(system: System, force: float, speeds: np.ndarray) -> list[Solve
             raise AnalysisError(f"the contact at rest: {error}") from error
         if moving[:1] != list(speeds[:1]):
             rest = [SolvedPoint(0.0, problem, dry)]
-        if moving and not is_lifted and float(dry.film.min()) * problem.gap > _closing(system):
+        if moving and not is_lifted and float(dry.film.min()) * problem.gap > _closing_gap(system):
             first = SolvedPoint(min(_gentle_speed(problem, dry, system), moving[0]), problem, dry)
             solved, lost = _march(system, force, moving, first)
     left = moving[len(solved) :]
     if left:
-        above, lost_above = _from_above(system, force, left)
+        above, lost_above = _solve_thick(system, force, left)
         if lost_above is not None:
             raise _lost(left[0], lost or lost_above)
         solved += above
     return rest + solved
 
 
-def _from_above(
+def _solve_thick(
     system: System, force: float, speeds: list[float]
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
     """Return solutions from a thick film to higher and lower speeds, and a failure if any."""
@@ -252,7 +252,7 @@ def _gentle_speed(problem: PointProblem, dry: PointSolution, system: System) -> 
     return number / couette_number(problem, system.viscosity, 1.0)
 
 
-def _closing(system: System) -> float:
+def _closing_gap(system: System) -> float:
     return 1.02 * system.factors.percolation_separation
 
 

@@ -111,7 +111,7 @@ def check_run(
     unfit = [name for name in checks if subject.is_points and name not in _OF_POINTS]
     left = dict.fromkeys(unfit, _NO_SAMPLES)
     left |= dict.fromkeys(skip, SWITCHED_OFF)
-    answers = _object_to_nothing(results_of_checks(checks, subject, resolved, left))
+    answers = _flag_unexamined(results_of_checks(checks, subject, resolved, left))
     results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()} | {MANUAL: BIT}
     # an error of the time affects every signal; a correct time says nothing about the values
@@ -154,8 +154,8 @@ def _objections(flags: np.ndarray) -> np.ndarray:
     return np.where(good, np.int8(NOT_EVALUATED), flags)
 
 
-def _object_to_nothing(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
-    """Add an objection if every check but that of segments was skipped."""
+def _flag_unexamined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
+    """Return results with an objection if every check except that of segments was skipped."""
     others = [result for name, rows in results.items() if name != _SEGMENTS for result in rows]
     own = results.get(_SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):

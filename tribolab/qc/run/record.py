@@ -232,7 +232,7 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
 
 def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
-    joins = _joins(subject)
+    joins = _step_borders(subject)
     for name, values in one_by_one(subject.force_signals.items()):
         flags = signals.spikes(values, limits["noise"])
         flags[joins] = NOT_EVALUATED  # the samples before belong to another step
@@ -249,7 +249,7 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     return results
 
 
-def _joins(subject: RunSubject) -> np.ndarray:
+def _step_borders(subject: RunSubject) -> np.ndarray:
     """Return the samples on both sides of each start of a new step or continued record."""
     starts = np.flatnonzero(timing.time_gaps(subject.time) == SUSPECT)
     steps = subject.run.get("step")

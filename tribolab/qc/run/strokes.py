@@ -125,10 +125,10 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         status = "pass" if periods[fewest] >= limits["periods"] else "suspect"
         where, value = subject.segment_label(fewest), float(periods[fewest])
         results.append(Result(status, subject.friction_signal, text, value, "1", where))
-    return [*results, *_periods_at_odds(subject, limits)]
+    return [*results, *_unequal_periods(subject, limits)]
 
 
-def _periods_at_odds(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+def _unequal_periods(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     """Report oscillating segments in which drops and spectrum give different periods."""
     slip = subject.slip
     odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)

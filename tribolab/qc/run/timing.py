@@ -148,7 +148,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     scatter = np.empty(blocks)
     for first, last in pieces(0, blocks, block=length):
         start = edges[first]
-        odd = _odd(time[start : edges[last - 1] + length + 2])
+        odd = _interval_change(time[start : edges[last - 1] + length + 2])
         whole = np.lib.stride_tricks.sliding_window_view(odd, length)[edges[first:last] - start]
         scatter[first:last] = medians_of_rows(whole)
     bad = scatter / (0.6745 * np.sqrt(2)) > suspect
@@ -159,7 +159,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     return flags
 
 
-def _odd(time: np.ndarray) -> np.ndarray:
+def _interval_change(time: np.ndarray) -> np.ndarray:
     """Return the relative change of the interval at each sample except the first and last."""
     interval = np.diff(time)
     both = interval[1:] + interval[:-1]
@@ -191,7 +191,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     interval = without_gaps(np.diff(time))
     if 0 < interval.max() <= factor * interval.min():
         return None
-    least = _least_mean(interval, factor) or _least_of_slow(interval, factor)
+    least = _fastest_interval(interval, factor) or _uneven_interval(interval, factor)
     if not least:
         return None
     # the cut that separates the logarithms best into two levels
@@ -203,7 +203,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     return cut
 
 
-def _least_mean(interval: np.ndarray, factor: float) -> float:
+def _fastest_interval(interval: np.ndarray, factor: float) -> float:
     """Return the smallest mean interval of equal numbers of rows; 0 if all are equal."""
     parts = min(_PARTS, interval.size // 8)
     if parts < 2:
@@ -213,7 +213,7 @@ def _least_mean(interval: np.ndarray, factor: float) -> float:
     return float(means.min()) if means.max() > factor * means.min() else 0.0
 
 
-def _least_of_slow(interval: np.ndarray, factor: float) -> float:
+def _uneven_interval(interval: np.ndarray, factor: float) -> float:
     """Return the usual interval if equal periods have very different numbers of rows, else 0.
 
     A slow rate has few rows and would be missed among equal numbers of rows.

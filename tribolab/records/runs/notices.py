@@ -63,7 +63,7 @@ def notices_of(
     """Return the notices on a run from its decisions, checks and results."""
     notices = decision_notices(name, decisions)
     notices += [
-        _of_check(name, row)
+        _check_notice(name, row)
         for row in findings_of(run)
         if row["status"] not in ("pass", "skipped") or row.get("noted")
     ]
@@ -146,7 +146,7 @@ def _remarks(friction: xr.Dataset) -> list[str]:
     ]
 
 
-def _of_check(name: str, row: Mapping[str, Any]) -> Notice:
+def _check_notice(name: str, row: Mapping[str, Any]) -> Notice:
     where = f"{row['check']} {row['variable']}".strip()
     if decision := row.get("decision", ""):
         return Notice("note", name, where, f"{decision}: {row['status']}: {row['message']}.")

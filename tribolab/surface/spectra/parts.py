@@ -166,7 +166,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         # the logarithm of a mean of few values scatters more than the mean and has longer tails
         variance += np.mean((squares - whole**2) ** 2) / lines * (1.0 + 1.5 / worth)
         first = max(first, how.first(min(stop - start for start, stop in parts)))
-        unlike = max(unlike, _unlike(np.array(each), np.array(tapers), lines, first))
+        unlike = max(unlike, _excess_scatter(np.array(each), np.array(tapers), lines, first))
     if first >= lines.size:
         return None
     return PartsSpectrum(power, unlike * np.sqrt(variance) / len(height), first)
@@ -206,7 +206,7 @@ def _remove_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarr
     return left
 
 
-def _unlike(powers: np.ndarray, tapers: np.ndarray, lines: np.ndarray, first: int) -> float:
+def _excess_scatter(powers: np.ndarray, tapers: np.ndarray, lines: np.ndarray, first: int) -> float:
     """Return the factor by which spectra (part, bin) of parts differ more than Gaussian heights."""
     known = np.arange(lines.size) >= first
     if len(powers) < 2 or not known.any():

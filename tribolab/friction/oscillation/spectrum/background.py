@@ -47,11 +47,11 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
     rest = measured - models
     level = _quantile(rest, 0.4)
     rest -= level
-    best, shift = _least_off(rest, weight)
+    best, shift = _best_model(rest, weight)
     return np.exp(models[best] + (level[best] + shift))
 
 
-def _least_off(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
+def _best_model(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
     """Return the model (model, band) and the shift of its level with the least cost.
 
     Candidates are selected in single precision, in half the time, and computed in full precision.

@@ -72,7 +72,7 @@ class Survey(NamedTuple):
         """Return the survey with some bins replaced by the background (bin)."""
         level = np.interp(self.fine.frequency, self.middle, self.background)
         fine = self.fine._replace(power=np.where(part, level, self.fine.power))
-        return _seen(fine, self.duration, self.mains, self.background)
+        return _survey(fine, self.duration, self.mains, self.background)
 
 
 def survey(record: EvenRecord) -> Survey | None:
@@ -86,14 +86,14 @@ def survey(record: EvenRecord) -> Survey | None:
     if record.values.size < 16:
         return None
     mains = find_mains(record)
-    fine = _without(spectrum(record), mains)
+    fine = _remove_mains(spectrum(record), mains)
     middle, power = bands(fine, limits.BANDS_PER_DECADE.value)[:2]
     if middle.size < 4 or not power.max() > 0:
         return None
-    return _seen(fine, record.values.size * record.spacing, mains)
+    return _survey(fine, record.values.size * record.spacing, mains)
 
 
-def _seen(
+def _survey(
     fine: Spectrum,
     duration: float,
     mains: tuple[Mains, ...],
@@ -139,7 +139,7 @@ def above_lower(
     return np.where((below > 0) & (usual > 0), np.nan_to_num(chance, nan=1.0), 1.0)
 
 
-def _without(spectrum: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
+def _remove_mains(spectrum: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
     """Replace mains lines by the median of their surroundings."""
     power = spectrum.power.copy()
     for line in mains:
