@@ -26,7 +26,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from hostile import CASES
 
-SECONDS, MEMORY, PATIENCE = 5.0, 1 << 30, 300.0
+SECONDS, MEMORY, PATIENCE = 5.0, 1 << 30, 900.0
 _NEVER = {
     "a traceback": r"Traceback \(most recent",
     "a crash": r"crashed with|--debug shows where",

@@ -29,7 +29,10 @@ for _kind in KINDS:
     )
     def _(folder: Path, kind: str) -> Command:
         file = campaign(folder, results=True)
-        return [sys.executable, "-m", "hostile.damage", str(file), kind, str(_COUNT)]
+        start = (
+            f"from hostile.damage import main, Path; main(Path({str(file)!r}), {kind!r}, {_COUNT})"
+        )
+        return [sys.executable, "-c", start]
 
 
 def _listed(change: Callable[[dict[str, Any]], object], signed: bool) -> Callable[[Path], None]:
