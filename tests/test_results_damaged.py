@@ -37,15 +37,6 @@ def noticed(results: Path, name: str) -> bool:
     return name in damaged or not ledger.files  # a marker of which nothing is left is refused
 
 
-def reread(content: bytes) -> object:
-    """What a marker says, apart from spaces and words that are for people."""
-    try:
-        listed = json.loads(content)
-        return [listed["files"], listed["folders"]]
-    except (ValueError, LookupError, TypeError):
-        return None
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_two_hundred_random_corruptions_of_each_kind_of_file_are_noticed(campaign, name):
     results, random = campaign.parent / "results", np.random.default_rng(KINDS.index(name))
@@ -60,9 +51,7 @@ def test_two_hundred_random_corruptions_of_each_kind_of_file_are_noticed(campaig
         (results / name).write_bytes(whole)
         spoil(results / name, random)
         if not noticed(results, name):
-            content = (results / name).read_bytes()
-            if name != MARKER or reread(content) != reread(whole):
-                believed.append(number)
+            believed.append(number)
     assert believed == []
 
 

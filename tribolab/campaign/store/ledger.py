@@ -18,6 +18,7 @@ from tribolab.campaign.store.limits import ALWAYS_READ, SAMPLE, SAMPLES
 
 MARKER = ".tribolab-results"
 _LENGTH = 32  # digits of a checksum
+# compared with each marker: another text would make the markers of earlier versions invalid
 _ABOUT = (
     "Written by tribolab. The files listed here are replaced by the next run as a whole; whatever "
     "else lies in this folder is left where it is."
@@ -100,7 +101,9 @@ class Ledger:
             *(ValueError, LookupError, TypeError, AttributeError, RecursionError)
         ):
             listed = json.loads(text)
-            whole = "blake2b" not in listed or listed["blake2b"] == _checksum(listed)
+            plain = "blake2b" not in listed  # written by an early version
+            as_written = listed.get("about") == _ABOUT and text == _as_text(listed)
+            whole = plain or (as_written and listed["blake2b"] == _checksum(listed))
             inside = all(map(_is_inside, listed["files"]))
             if whole and inside and set(listed) <= {"about", "blake2b", "files", "folders"}:
                 files = {name: LedgerEntry(*entry) for name, entry in listed["files"].items()}
@@ -188,8 +191,7 @@ class Ledger:
 def _write(folder: Path, files: Mapping[str, LedgerEntry], folders: Sequence[str]) -> None:
     listed: dict[str, object] = {"about": _ABOUT, "files": files, "folders": folders}
     listed["blake2b"] = _checksum(listed)
-    text = json.dumps(listed, indent=0, ensure_ascii=True)
-    (folder / MARKER).write_text(text + "\n", encoding="utf-8")
+    (folder / MARKER).write_bytes(_as_text(listed))
 
 
 def repair(folder: Path) -> None:
@@ -233,6 +235,10 @@ def other_name(name: str, modified: int) -> str:
     path = Path(name)
     when = dt.datetime.fromtimestamp(modified / 1e9, dt.UTC).strftime("%Y%m%dT%H%M%S")
     return path.with_name(f"{path.stem}.changed-{when}{path.suffix}").as_posix()
+
+
+def _as_text(listed: Mapping[str, object]) -> bytes:
+    return json.dumps(listed, indent=0, ensure_ascii=True).encode() + b"\n"
 
 
 def _checksum(listed: Mapping[str, object]) -> str:
