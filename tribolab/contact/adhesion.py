@@ -85,9 +85,9 @@ def adhesion(
     ``gamma_eff(q) P(q) = gamma_0 [P(q1) int (1 + xi^2 x)^(1/2) e^-x dx - (2 pi/delta) int_q^q1 q'^2
     P S C dq']``, ``delta = 4 gamma_0/E*``, ``S = kappa + (1 - kappa) P^2``: Eqs. (11) and (12) of
     [1]_; gamma_eff is clipped at zero. P(q) is the share of a stress that diffuses from the nominal
-    pressure with the variance ``(pi/2) E*^2 int q^3 C dq`` without reaching ``-c_a
-    sqrt(gamma_eff(q) E* q)`` [2]_; without adhesion this gives Eqs. (6) and (7). Doubling `nodes`
-    from 200 changes areas by less than 0.1 %.
+    pressure with the variance ``(pi/2) E*^2 int q^3 C dq`` without reaching
+    ``-c_a sqrt(gamma_eff(q) E* q)`` [2]_; without adhesion this gives Eqs. (6) and (7). Doubling
+    `nodes` from 200 changes areas by less than 0.1 %.
 
     ``balance_residual`` is the misfit of Eq. (11) at the largest wavenumber, relative to its terms;
     at the other nodes the discretised equations are fulfilled. A pressure below 1e-4 of E* xi/2 (15

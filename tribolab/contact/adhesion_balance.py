@@ -27,9 +27,9 @@ from tribolab.units.conversion import positive, to_si
 
 # Share of the nodes that is spaced evenly in ln q; the others follow the growth of the stress.
 _EVEN_SHARE = 0.2
-_THINNED = 4  # factor by which nodes are thinned for the first search of the root
-_FELT = 1e-11  # of the elastic energy, below which adhesion is negligible
-_NEAR = 2e-5  # relative error of a guess that needs no correction
+_THINNING = 4  # factor by which nodes are thinned for the first search of the root
+_NEGLIGIBLE = 1e-11  # of the elastic energy, below which adhesion is negligible
+_CLOSE = 2e-5  # relative error of a guess that needs no correction
 _SMALLEST_AREA = 1e-15
 _LARGEST_RESIDUAL = 1e-8
 # Below this share of E* xi/2 the limit p -> 0 is used: the theory is linear in p there, and
@@ -163,7 +163,7 @@ class Interface:
                 )
                 expected = guess
                 guess = np.maximum(before - losses[i], _SMALLEST_AREA)
-                which = np.flatnonzero(np.abs(guess - expected) > _NEAR * guess)
+                which = np.flatnonzero(np.abs(guess - expected) > _CLOSE * guess)
                 if not which.size:
                     break
             area[i + 1] = guess
@@ -178,7 +178,7 @@ class Interface:
 
     def thinned(self) -> Interface:
         """Return the interface on a quarter of its nodes, including both ends."""
-        kept = np.unique(np.append(np.arange(0, self.wavenumber.size - 1, _THINNED), -1))
+        kept = np.unique(np.append(np.arange(0, self.wavenumber.size - 1, _THINNING), -1))
         kept = np.append(kept[1:], self.wavenumber.size - 1)
         return replace(
             self,
@@ -275,7 +275,7 @@ def balance(
     unknown = np.isnan(pressure)
     area[unknown], binding[unknown], residual[unknown] = np.nan, np.nan, np.nan
     # if adhesion is negligible compared with the elastic energy, use the solution without adhesion
-    felt = work * surface.area_gain * area[:, -1] > _FELT * surface.stored(area)
+    felt = work * surface.area_gain * area[:, -1] > _NEGLIGIBLE * surface.stored(area)
     todo = felt & ~unknown
     if todo.any():
         part = surface.solve(pressure[todo], work[todo], max_iterations)

@@ -10,7 +10,7 @@ import numpy as np
 Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 _ROUGH, _FINE = 1e-4, 1e-11  # tolerances of zero: cheap functions, expensive functions
-_SIDE = 1e-3  # of the bracket, over which the slope of the cheap function is computed
+_SLOPE_STEP = 1e-3  # of the bracket, over which the slope of the cheap function is computed
 _SECANTS = 12
 
 
@@ -68,7 +68,7 @@ def guided_root(
         ends = np.array([low[outside], high[outside]])
         size = np.abs([cheap(end, outside) for end in ends])
         start[outside] = np.where(size[0] < size[1], *ends)
-    side = _SIDE * (high - low)
+    side = _SLOPE_STEP * (high - low)
     aside = np.where(start + side > high, start - side, start + side)
     slope = (cheap(aside, every) - cheap(start, every)) / (aside - start)
     x, value, steps = _by_secants(dear, start, slope, low, high, min(_SECANTS, iterations))

@@ -192,8 +192,8 @@ def jkr_half_width(
     -----
     Eq. (15) of [1]_, ``F/L = pi E* a^2/(4R) - sqrt(2 pi E* a w)``. With a = a_m b^2, a_m the
     half-width at the smallest load, it becomes ``b^4 - 4 b = -3 F/F_min``, convex for b > 1, so
-    that Newton's method from above always converges. For a ball ``a^3 = (3R/4E*) [F + 3 pi w R +
-    sqrt(6 pi w R F + (3 pi w R)^2)]``.
+    that Newton's method from above always converges. For a ball
+    ``a^3 = (3R/4E*) [F + 3 pi w R + sqrt(6 pi w R F + (3 pi w R)^2)]``.
 
     References
     ----------

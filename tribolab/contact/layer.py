@@ -154,9 +154,9 @@ def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[floa
 
     Notes
     -----
-    With ``p(r) = -int_r^a phi'(t)/sqrt(t^2 - r^2) dt`` the equation for the layer is ``phi(t) -
-    int_0^a k(t, s) phi(s) ds = (delta - t^2)/pi``, phi(a) = 0, ``k = (2/pi) int (1 - W(qd)) cos qt
-    cos qs dq``, and the load is 2 pi int phi dt.
+    With ``p(r) = -int_r^a phi'(t)/sqrt(t^2 - r^2) dt`` the equation for the layer is
+    ``phi(t) - int_0^a k(t, s) phi(s) ds = (delta - t^2)/pi``, phi(a) = 0,
+    ``k = (2/pi) int (1 - W(qd)) cos qt cos qs dq``, and the load is 2 pi int phi dt.
     """
     k, weight = _nodes(layer.poisson_ratio, layer.share)
     node, share = np.polynomial.legendre.leggauss(order)

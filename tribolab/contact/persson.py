@@ -165,9 +165,9 @@ def mean_separation(
     Notes
     -----
     ``u(p) = 2 int (ds/q) F(p / (E* sqrt(pi) s))`` with ``s(q)^2 = int_{q0}^q q'^3 C dq'`` and
-    ``F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2)``. At small pressure ``p ~
-    exp(-u/u0)`` with ``u0 = 2 gamma int ds/q``. Eq. (8) of [3]_ is an approximation: its alpha is
-    h_rms/u0, about 1.8; the printed 0.5 is 1/alpha.
+    ``F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2)``. At small pressure
+    ``p ~ exp(-u/u0)`` with ``u0 = 2 gamma int ds/q``. Eq. (8) of [3]_ is an approximation: its
+    alpha is h_rms/u0, about 1.8; the printed 0.5 is 1/alpha.
 
     References
     ----------

@@ -31,10 +31,10 @@ _MORE_THAN_EPS = 1e-14
 class Separation:
     """Contact pressure p(u) and its exact inverse u(p) for one rough surface.
 
-    Made by `separation_table`. Monotone everywhere: inside the table ln p is a cubic in ``U =
-    ln(exp(u/h_rms) - 1)`` with the theory's own slopes; it is extrapolated at larger u as ``p ~
-    exp(-u/decay_length)``, at smaller u as ``u ~ exp(-(p/p_1)^2)``, both with the slope at the end
-    of the table.
+    Made by `separation_table`. Monotone everywhere: inside the table ln p is a cubic in
+    ``U = ln(exp(u/h_rms) - 1)`` with the theory's own slopes; it is extrapolated at larger u as
+    ``p ~ exp(-u/decay_length)``, at smaller u as ``u ~ exp(-(p/p_1)^2)``, both with the slope at
+    the end of the table.
 
     Parameters
     ----------

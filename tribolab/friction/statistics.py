@@ -140,7 +140,7 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
         std are weighted by time. ``effective_samples`` n_eff is std^2 over the variance of the mean
         beyond the path, at most the number of samples: few with a trend along the path;
         ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
-        ``determined`` says whether U95 is at most half the range of the samples. ``trend_p_value``
+        ``determined`` is true if U95 is at most half the range of the samples. ``trend_p_value``
         tests the least-squares slope against the correlated residuals.
 
     Examples

@@ -17,8 +17,8 @@ from tribolab.lubrication.mixed import Problem, Solution
 from tribolab.lubrication.parameters import Liquid
 
 _INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in units of the reach of the film
-_CLASS = 100.0  # films within this factor share a mesh
-_USUAL, _MORE = 5e-3, 0.3  # edge for more cells, relative increase per decade
+_CLASS_RATIO = 100.0  # films within this factor share a mesh
+_FINE_EDGE, _EXTRA_CELLS = 5e-3, 0.3  # edge for more cells, relative increase per decade
 SHORTEST = 1.5  # smallest distance of the liquid's start from the middle, in half-widths
 
 
@@ -56,8 +56,8 @@ def layout(
     film of a class: films within a factor of 100 share a mesh, so that a curve needs few meshes.
     The drag outside the domain is that of `outside_drag`.
     """
-    lowest = _CLASS ** np.floor(np.log(max(film, 1e-30)) / np.log(_CLASS))
-    reach = np.sqrt(1 + max(lowest * _CLASS, 1.0)) * domain
+    lowest = _CLASS_RATIO ** np.floor(np.log(max(film, 1e-30)) / np.log(_CLASS_RATIO))
+    reach = np.sqrt(1 + max(lowest * _CLASS_RATIO, 1.0)) * domain
     size = float(np.sqrt(max(lowest, 1.0)))
     # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
     edge = (max(decay, lowest) / 1.9) ** (2 / 3)
@@ -209,7 +209,7 @@ def _cell_count(cells: int, decay: float) -> int:
     if not decay:
         return cells
     edge = (decay / 1.9) ** (2 / 3)
-    return round(cells * (1 + _MORE * max(np.log10(_USUAL / edge), 0.0)))
+    return round(cells * (1 + _EXTRA_CELLS * max(np.log10(_FINE_EDGE / edge), 0.0)))
 
 
 def _rounded(value: float) -> float:

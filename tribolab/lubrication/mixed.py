@@ -13,9 +13,9 @@ from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
 _STEPS = 30
-_CAP = 0.6  # largest relative change of the film in one step
+_MAX_CHANGE = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-9  # of the maximum pressure, and of the load
-_NEAR = 1e-5  # residual below which the matrix of the last step is reused
+_REUSE = 1e-5  # residual below which the matrix of the last step is reused
 _ROUNDING = 1e-8  # residual accepted if a further step no longer improves it
 
 
@@ -131,12 +131,12 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
 
     Notes
     -----
-    Unknowns are the film u in the cells and the constant of Eq. (9); the pressure is ``p = K^-1 (u
-    - c - x^2)``, the fluid's part p - p_cont(u). A cell's equation is div J = 0 up to the rupture
-    of the film and p_fluid = 0 behind it, the solution of ``p_fluid >= 0``, ``div J >= 0``,
-    ``p_fluid div J = 0`` if the film grows towards the outlet. The position of rupture follows
-    exactly from each film (`_rupture`), so that the front moves over any distance in one step, not
-    by one cell per step.
+    Unknowns are the film u in the cells and the constant of Eq. (9); the pressure is
+    ``p = K^-1 (u - c - x^2)``, the fluid's part p - p_cont(u). A cell's equation is div J = 0 up to
+    the rupture of the film and p_fluid = 0 behind it, the solution of ``p_fluid >= 0``,
+    ``div J >= 0``, ``p_fluid div J = 0`` if the film grows towards the outlet. The position of
+    rupture follows exactly from each film (`_rupture`), so that the front moves over any distance
+    in one step, not by one cell per step.
     """
     state, before, solver = start, np.inf, None
     for step in range(_STEPS + 1):
@@ -146,7 +146,7 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
             return _proof(problem, couette, state, film, step)
         if step == _STEPS or not np.isfinite(error):
             break
-        if solver is None or error > min(_NEAR, before / 10):
+        if solver is None or error > min(_REUSE, before / 10):
             solver = _factored(problem, film)
         before = error
         # LAPACK reads the transpose without a copy
@@ -154,7 +154,7 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
         if not np.all(np.isfinite(change)):
             raise NotConvergedError("the linearised equations are singular")
         largest = np.max(np.abs(change[:-1]) / state.film)
-        part = min(1.0, _CAP / largest)
+        part = min(1.0, _MAX_CHANGE / largest)
         state = state.moved(problem.mesh, part * change[:-1], part * change[-1])
     raise NotConvergedError(f"the residual is {error:.1e} after {step} steps")
 

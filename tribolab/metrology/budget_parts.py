@@ -20,7 +20,7 @@ _RECTANGULAR = ("half-width", "step")
 # two runs plus a calibration is then 93.4 to 96.4 % for any ratio of the two (87 to 95 % without),
 # for three runs 95 to 95.8 %. For two runs no rule is within 1 %
 _FEW, _CHANCE = 4.0, 10.0
-_DOMINATES = 0.7  # share of the variance above which one rectangular part shapes the distribution
+_DOMINANT = 0.7  # share of the variance above which one rectangular part shapes the distribution
 
 
 class ScatterPart(NamedTuple):
@@ -162,7 +162,7 @@ def _limitations(
         share = parts**2 / np.sum(parts**2, axis=0)
     for name, row in zip(names, share, strict=True):
         stated = known[name].distribution if name in known else ""
-        if stated in _RECTANGULAR and row.size and np.nanmedian(row) > _DOMINATES:
+        if stated in _RECTANGULAR and row.size and np.nanmedian(row) > _DOMINANT:
             said.append(f"too wide, because one rectangular part dominates: {part_words(name)}")
     return "; ".join(said)
 

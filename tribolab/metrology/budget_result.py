@@ -38,7 +38,7 @@ class UncertaintyBudget:
 
     @property
     def says(self) -> str:
-        """What the uncertainty does not include, as text; "" if it is complete."""
+        """Omissions of the uncertainty, as text; "" if it is complete."""
         return str(self.data.attrs.get("uncertainty_says", ""))
 
     def table(self, at: int | None = None) -> pd.DataFrame:
@@ -54,7 +54,7 @@ class UncertaintyBudget:
         -------
         pandas.DataFrame
             A row for each part, the largest first, and one for the whole: ``part``, ``u`` (of the
-            input, in its ``unit``), ``stated`` (as what), ``varies``, ``dof``, ``sensitivity``,
+            input, in its ``unit``), ``stated`` (its form), ``varies``, ``dof``, ``sensitivity``,
             ``contribution`` [1] and ``share`` [1] of the variance, ``source``. The last row has the
             combined uncertainty and its degrees of freedom; ``U95`` is an attribute.
 

@@ -12,8 +12,8 @@ from tribolab.friction.statistics import NORMAL, estimate_of
 from tribolab.units.conversion import positive
 
 _TRIM = 0.1  # share of each interval with and without the weight that is cut at both ends
-_LEAST = 20  # smallest number of samples of an interval
-_CLEAR = 10.0  # smallest ratio of the step to the noise
+_MIN_SAMPLES = 20  # smallest number of samples of an interval
+_MIN_STEP = 10.0  # smallest ratio of the step to the noise
 
 
 class DeadWeightGain(NamedTuple):
@@ -78,7 +78,7 @@ def dead_weight_gain(
         raise AnalysisError(f"the run has no '{signal}' that a weight could load")
     known = np.isfinite(run[signal].values)
     time, values = run["time"].values[known], run[signal].values[known].astype(float)
-    if values.size < 4 * _LEAST:
+    if values.size < 4 * _MIN_SAMPLES:
         raise AnalysisError(f"{values.size} samples are too few to see a weight that is put on")
     low, high = np.percentile(values, [2.0, 98.0])
     loaded = values > (low + high) / 2
@@ -87,11 +87,11 @@ def dead_weight_gain(
     noise = []
     for piece in np.split(np.arange(values.size), ends):
         inner = piece[int(_TRIM * piece.size) : piece.size - int(_TRIM * piece.size)]
-        if inner.size >= _LEAST:
+        if inner.size >= _MIN_SAMPLES:
             told = estimate_of(time[inner], values[inner])
             parts[bool(loaded[inner[0]])].append((told.mean, told.u95 / NORMAL))
             noise.append(told.std)
-    if not parts[True] or not parts[False] or high - low < _CLEAR * float(np.median(noise)):
+    if not parts[True] or not parts[False] or high - low < _MIN_STEP * float(np.median(noise)):
         raise AnalysisError(
             "no step of a weight that is put on or taken off is seen: record some seconds without "
             "the weight before or after those with it"

@@ -1,4 +1,4 @@
-"""Planning of sliding time and repeats for a wanted uncertainty of friction."""
+"""Planning of sliding time and repeats for a required uncertainty of friction."""
 
 from __future__ import annotations
 

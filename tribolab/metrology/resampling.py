@@ -15,10 +15,10 @@ from tribolab.core.aliases import Array
 _MIN_RUNS = 4  # smallest number of runs per group for permutations
 MOST_ROTATED = 40  # largest number of runs of both groups together
 _DRAWS, _FEW_DRAWS = 4999, 1999
-_FEW_WILL_DO = 0.005  # significance level from which fewer draws suffice
+_FEW_LEVEL = 0.005  # significance level from which fewer draws suffice
 _EXHAUSTIVE = 5000
-_REACHED = 0.8  # times the wanted level; permutations must resolve it
-_SAME = 1e-9  # relative: rounding must not distinguish a draw from the data
+_MIN_SHARE = 0.8  # share of the level that permutations must reach
+_ROUNDING = 1e-9  # relative: rounding must not distinguish a draw from the data
 
 
 def permutations_will_do(first: int, second: int, level: float) -> bool:
@@ -35,7 +35,7 @@ def permutations_will_do(first: int, second: int, level: float) -> bool:
     if min(first, second) < _MIN_RUNS:
         return False
     step = (2 if first == second else 1) / math.comb(first + second, first)
-    return math.floor(level / step * (1 + _SAME)) * step >= _REACHED * level
+    return math.floor(level / step * (1 + _ROUNDING)) * step >= _MIN_SHARE * level
 
 
 def permutation_test(
@@ -110,7 +110,7 @@ def rotation_test(
     .. [1] Langsrud (2005), Stat. Comput. 15, 53-60. doi:10.1007/s11222-005-4789-5
     """
     counts = len(first), len(second)
-    turns = _rotations(sum(counts) - 1, _FEW_DRAWS if level >= _FEW_WILL_DO else _DRAWS, seed)
+    turns = _rotations(sum(counts) - 1, _FEW_DRAWS if level >= _FEW_LEVEL else _DRAWS, seed)
     about = np.concatenate([_centre(first), _centre(second)])
     drawn = _smallest(about, counts, terms, turns, seed)
     drawn[0] = 0.0  # the groups as measured
@@ -121,7 +121,7 @@ def rotation_test(
 
 def _allowed_draws(level: float, draws: int) -> int:
     """Return the number of draws that may exceed a difference that is still significant."""
-    return math.floor(level * draws * (1 + _SAME))
+    return math.floor(level * draws * (1 + _ROUNDING))
 
 
 def _centre(values: Array) -> Array:
@@ -219,12 +219,12 @@ def _smallest(
 def _share_above(largest: Array, scores: Array) -> Array:
     """Return the share of the draws whose largest score reaches each score."""
     ordered = np.sort(largest)
-    bound = np.where(np.isfinite(scores), scores * (1 - _SAME), scores)
+    bound = np.where(np.isfinite(scores), scores * (1 - _ROUNDING), scores)
     return 1 - np.searchsorted(ordered, bound, side="left") / ordered.size
 
 
 def _share_below(smallest: Array, p_values: Array) -> Array:
     """Return the share of the draws whose smallest p is at most each p."""
     ordered = np.sort(smallest)
-    share = np.searchsorted(ordered, p_values * (1 + _SAME), side="right") / ordered.size
+    share = np.searchsorted(ordered, p_values * (1 + _ROUNDING), side="right") / ordered.size
     return np.maximum(share, 1 / ordered.size)

@@ -13,7 +13,7 @@ from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.reading.dialect.uncertainty import Known
 
-_TOLD_BY_LOOPS = 3  # pairs above which the loops themselves determine the drift of the zero
+_MIN_LOOPS = 3  # pairs above which the loops themselves determine the drift of the zero
 # inputs of the friction coefficient; the other names are inputs of the model
 _OF_FRICTION = (
     "friction_gain",
@@ -98,7 +98,7 @@ def readings_of(friction: xr.Dataset) -> SegmentReadings:
         middle,
         np.full(mu.size, by_itself) & ~both,
         _values(friction, "normal_force_offset", 0.0) != 0,
-        int(pair.max(initial=-1)) + 1 >= _TOLD_BY_LOOPS,
+        int(pair.max(initial=-1)) + 1 >= _MIN_LOOPS,
         str(friction.attrs.get("middle_of_loop", "")),
     )
 

@@ -103,7 +103,7 @@ def attach(
     Parameters
     ----------
     data
-        Dataset that holds the variable `name`.
+        Dataset that contains the variable `name`.
     name
         The variable that was checked.
     flags

@@ -69,7 +69,7 @@ class Check(Generic[Subject]):
     question
         Question that the check answers.
     cure
-        What to do when it objects.
+        Remedy for an objection.
     limits
         Limits by name, each with a unit and a reason.
     examine

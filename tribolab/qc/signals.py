@@ -18,7 +18,7 @@ from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 
 _BLOCK = 64  # samples with one noise level; steps of a run may be as short
-_LOUDER = 1.6  # ratio of noise levels that chance does not produce in so few samples
+_NOISE_RATIO = 1.6  # ratio of noise levels that chance does not produce in so few samples
 
 _HELD = 3  # samples per reading of a slowly refreshed channel
 _LONGEST_HELD = 1 << 24  # samples; channels are not recorded much faster than they are refreshed
@@ -105,7 +105,7 @@ def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, 
     quiet = np.quantile(levels, 0.25)
     beside = np.pad(levels, 1, mode="edge")
     loudest = np.maximum(beside[:-2], beside[2:])
-    levels = np.where(loudest > _LOUDER * levels, loudest, levels)
+    levels = np.where(loudest > _NOISE_RATIO * levels, loudest, levels)
     return np.maximum(levels, quiet) / (0.6745 * np.sqrt(6.0)), length
 
 

@@ -82,7 +82,7 @@ class CurveRecord:
     budget
         A row for each point and each part of its uncertainty.
     uncertainty_says
-        What the uncertainty does not include; "" if it is complete.
+        Omissions of the uncertainty; "" if it is complete.
     model_inputs
         Stated standard uncertainties of the model's inputs, by name: relative, except temperature
         [K] and water content (absolute).

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from tribolab.regime.model import Mode
 
 _FAR = 10.0  # ratio of speeds above which a plateau and the model's boundary regime differ
-_BELOW = 2.0  # ratio of the friction of uniform slip to that measured
-_WEAKER = 1.5  # ratio of drops at different speeds
-_FALLS = 0.10  # relative; a smaller fall of friction between two speeds is ignored
-_FALLEN = 0.8  # of the plateau's friction: below, the plateau has ended
+_MIN_SLIP_RATIO = 2.0  # ratio of the friction of uniform slip to that measured
+_MIN_DROP_RATIO = 1.5  # ratio of drops at different speeds
+_MIN_FALL = 0.10  # relative; a smaller fall of friction between two speeds is ignored
+_PLATEAU_END = 0.8  # of the plateau's friction: below, the plateau has ended
 
 
 def _moving(slip: xr.Dataset) -> xr.Dataset:
@@ -126,7 +126,7 @@ def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
     speed, mu = speed[part], mu[part]
     words = f"µ = {friction_text(mu[0])} at {speed_text(speed[0])}"
     words += f", {friction_text(mu[-1])} at {speed_text(speed[-1])}"
-    if mu[-1] < (1 - _FALLS) * mu[0]:
+    if mu[-1] < (1 - _MIN_FALL) * mu[0]:
         text = f"friction falls with speed where the traces oscillate ({words}): stick-slip of the "
         return Evidence(AGAINST, text + "rig's own spring would look alike", "curve")
     text = f"friction hardly falls where the traces oscillate ({words}): a spring alone, which "
@@ -145,7 +145,7 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
     slow, fast = float(drop[0]), float(drop[-1])
     words = f"{friction_text(slow)} at {speed_text(speed[0])}"
     words += f", {friction_text(fast)} at {speed_text(speed[-1])}"
-    if slow > _WEAKER * fast:
+    if slow > _MIN_DROP_RATIO * fast:
         quiet = slip["sliding_speed"].values[slip["waveform"].values == STEADY_SLIDING]
         above = quiet[quiet > speed.max()]
         end = f", gone at {speed_text(above.min())}" if above.size else ""
@@ -220,7 +220,7 @@ def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
     """Return evidence from the friction of uniform slip at the shear stress of rough surfaces."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
     stress = known.rough_shear_stress
-    if stress is None or not uniform > _BELOW * seen > 0:  # nothing to explain
+    if stress is None or not uniform > _MIN_SLIP_RATIO * seen > 0:  # nothing to explain
         return None
     text = (
         f"uniform slip at the rough surfaces' shear stress "
@@ -239,7 +239,7 @@ def forced_wetting(curve: xr.Dataset, slip: xr.Dataset | None, known: Mode) -> d
         return {}
     speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values
     last = _moving(slip)["sliding_speed"].values.max()
-    fallen = speed[(mu < _FALLEN * np.median(mu[:3])) & (speed > 0)]
+    fallen = speed[(mu < _PLATEAU_END * np.median(mu[:3])) & (speed > 0)]
     quiet = slip["sliding_speed"].values
     quiet = quiet[(quiet > last) & (slip["waveform"].values == STEADY_SLIDING)]
     ends = [x.min() for x in (fallen, quiet) if x.size]

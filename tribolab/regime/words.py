@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _STEADY, SAW, SINE, REVERSED = CLASSES
 _LONG = 0.5e-3  # m; shorter waves are neither turns of a track nor pitches of a screw
-_MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # speeds over which a wavelength is one
+_MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # over which a wavelength is fixed
 
 
 def friction_text(value: float) -> str:

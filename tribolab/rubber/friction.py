@@ -73,10 +73,10 @@ def viscoelastic_friction(
     Notes
     -----
     With ``e(omega) = E(omega)/((1 - nu^2) sigma_0)``: ``mu = (1/2) int q^3 C S P dq int_0^{2 pi}
-    cos(phi) Im e(q v cos phi) dphi``, ``P = erf(1/(2 sqrt(G)))``, ``S = 1/2 + P^2/2``, ``G = (1/8)
-    int q^3 C dq int_0^{2 pi} |e(q v cos phi)|^2 dphi`` [1]_. At rest G is that of the elastic
-    contact with the relaxed modulus. Other theories of the area replace the error function by
-    another function of 1/(2 sqrt(G)). With adhesion P is that of sliding times P_adh/P of
+    cos(phi) Im e(q v cos phi) dphi``, ``P = erf(1/(2 sqrt(G)))``, ``S = 1/2 + P^2/2``,
+    ``G = (1/8) int q^3 C dq int_0^{2 pi} |e(q v cos phi)|^2 dphi`` [1]_. At rest G is that of the
+    elastic contact with the relaxed modulus. Other theories of the area replace the error function
+    by another function of 1/(2 sqrt(G)). With adhesion P is that of sliding times P_adh/P of
     `adhesion` at rest, with the relaxed modulus, at each wavenumber; at most 1. The increase thus
     applies at the wavenumbers of the loss: it is larger for short waves than for long ones, and
     friction increases by less than the total contact area. Neglected are the stiffening of rubber

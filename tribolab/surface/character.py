@@ -11,10 +11,10 @@ _MOST_POINTS = 8192  # of a profile; a dominant wave must be sampled by several 
 _MOST_ROWS = 512  # of a map: the mean power of each line is then accurate to 6 %
 _PERIODS = 12  # fewer periods in a scan can arise by chance, which makes up to six
 _LOBE = 2  # lines on either side over which a Hann window spreads a wave
-_RULES = 0.55  # share of the mean square height that no single wave of a random surface reaches
-_BESIDE, _NEAR = 24, 4  # lines on either side that define the usual level, without the nearest ones
+_DOMINANT = 0.55  # share of the mean square height that no single wave of a random surface reaches
+_NEIGHBOURS, _EXCLUDED = 24, 4  # lines on each side for the usual level, without the nearest
 _CHANCE = 1e-6  # chance that any line of random heights exceeds its neighbours so far
-_LAY = 0.4  # ratio of the slopes along and across the lay; chance gives 0.6 on smooth small maps
+_MAX_SLOPE_RATIO = 0.4  # of slopes along and across the lay; smooth small maps give 0.6 by chance
 
 
 def self_affinity_objection(scans: xr.Dataset) -> str:
@@ -55,12 +55,12 @@ def self_affinity_objection(scans: xr.Dataset) -> str:
     for dim in dims:
         rows = np.moveaxis(values, -1, -2) if dim == "y" else values
         share, length = dominant_wave(rows.reshape(-1, rows.shape[-1]), steps[dim])
-        if share >= _RULES:
+        if share >= _DOMINANT:
             return (
                 f"one wave of {1e6 * length:.3g} um holds {100 * share:.0f} % of the mean square "
                 "height: a gauge, a groove or marks of a tool"
             )
-    if is_map and (ratio := slope_ratio(values, steps["y"], steps["x"])) < _LAY:
+    if is_map and (ratio := slope_ratio(values, steps["y"], steps["x"])) < _MAX_SLOPE_RATIO:
         return (
             f"slopes one way are {1 / ratio:.2g} times those across it: the surface has a lay, or "
             "the rows of the map are not in line"
@@ -113,12 +113,12 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
     """
     power, length = _power_of(rows, pitch)
     total = float(power.sum())
-    if power.size < 4 * _BESIDE or not total > 0:
+    if power.size < 4 * _NEIGHBOURS or not total > 0:
         return 0.0, float("nan")
-    inner = np.arange(2 * _BESIDE, power.size - _BESIDE)
-    windows = np.lib.stride_tricks.sliding_window_view(power, _BESIDE - _NEAR)
+    inner = np.arange(2 * _NEIGHBOURS, power.size - _NEIGHBOURS)
+    windows = np.lib.stride_tricks.sliding_window_view(power, _NEIGHBOURS - _EXCLUDED)
     middle = np.median(windows, axis=1)
-    left, right = middle[inner - _BESIDE], middle[inner + _NEAR + 1]
+    left, right = middle[inner - _NEIGHBOURS], middle[inner + _EXCLUDED + 1]
     # geometric mean for a falling spectrum; at its start only the right side
     usual = np.where(left >= right, np.sqrt(left * right), right) / np.log(2)
     ratio = power[inner] / np.where(usual > 0, usual, np.inf)

@@ -15,12 +15,12 @@ import xarray as xr
 from tribolab.core.errors import AnalysisError
 
 _TRIALS = 16  # positions at which the gaps are placed
-_MOST = 0.5  # share of missing heights above which a scan cannot be evaluated
-_FEW = 8  # missing heights at an end are bridged by the nearest height
+_MAX_MISSING = 0.5  # share of missing heights above which a scan cannot be evaluated
+_FEW_MISSING = 8  # missing heights at an end are bridged by the nearest height
 _STUDENT = 1.087  # 97.5 % quantile of Student's t with 15 degrees of freedom over the normal's
 _NORMAL = 1.96
-_DOUBT = 0.3  # share of the correction that is added to its error: gaps are not at random places
-_LOST = float(np.log(2.0))  # larger correction factors depend mostly on the gaps
+_SHIFT_SHARE = 0.3  # of the correction, added to its error: gaps are not at random places
+_MAX_FACTOR = float(np.log(2.0))  # larger correction factors depend mostly on the gaps
 
 
 class GapEffect(NamedTuple):
@@ -63,7 +63,7 @@ def cut_ends(scans: xr.Dataset) -> xr.Dataset:
     first = int(present.argmax(axis=1).max())
     last = present.shape[1] - int(present[:, ::-1].argmax(axis=1).max())
     lost = max(first, present.shape[1] - last)
-    if lost <= _FEW or last - first < max(2, present.shape[1] // 2):
+    if lost <= _FEW_MISSING or last - first < max(2, present.shape[1] // 2):
         return scans
     return scans.isel(x=slice(first, last))
 
@@ -180,7 +180,7 @@ def gap_effect(
     (`tests/benchmarks/gap_coverage.py`).
     """
     share = float(missing.reshape(len(missing), -1).mean(axis=1).max())
-    if share > _MOST:
+    if share > _MAX_MISSING:
         raise AnalysisError(
             f"{share:.0%} of the heights are missing; what is left says too little of the surface: "
             "leave that scan out"
@@ -207,7 +207,7 @@ def gap_effect(
     # gaps at the single highest peak give longer tails than the normal distribution
     farthest = np.abs(every - every.mean(axis=0)).max(axis=0) / _NORMAL
     scatter = np.maximum(_STUDENT * every.std(axis=0, ddof=1), farthest)
-    error = np.hypot(np.sqrt(1.0 + 1.0 / _TRIALS) * widen * scatter, _DOUBT * shift)
+    error = np.hypot(np.sqrt(1.0 + 1.0 / _TRIALS) * widen * scatter, _SHIFT_SHARE * shift)
     return GapEffect(shift, error, shift)
 
 
@@ -233,7 +233,7 @@ def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
     >>> gap_cutoff(np.array([1.0, 2.0, 3.0, 4.0]), effect)
     3.0
     """
-    lost = np.logical_and.accumulate(np.abs(effect.bridges[::-1]) > _LOST)[::-1]
+    lost = np.logical_and.accumulate(np.abs(effect.bridges[::-1]) > _MAX_FACTOR)[::-1]
     return float(wavenumber[np.argmax(lost)]) if lost.any() else float("inf")
 
 

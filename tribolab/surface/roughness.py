@@ -46,7 +46,7 @@ def roughness_parameters(
         Short-wave cut-off; None leaves short waves in. ``"auto"``: nothing.
     sampling_lengths
         True: Ra, Rq, Rsk, Rku are means over whole sampling lengths of one lambda_c (ISO 4287,
-        what most instruments show); False: they are taken over the whole evaluation length
+        as in most instruments); False: they are computed over the whole evaluation length
         (ISO 21920). Without lambda_c there are no sampling lengths.
 
     Returns

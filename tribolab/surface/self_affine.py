@@ -84,9 +84,9 @@ def psd_1d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
     Notes
     -----
     The forward Abel transform ``C_1D(k) = 2 int_k^inf C(q) q / sqrt(q^2 - k^2) dq``: over the
-    plateau a difference of square roots, over the power law an incomplete beta function with ``t =
-    k^2/q^2``. Between 0 and `low` it is not zero: waves oblique to the profile appear longer along
-    it.
+    plateau a difference of square roots, over the power law an incomplete beta function with
+    ``t = k^2/q^2``. Between 0 and `low` it is not zero: waves oblique to the profile appear longer
+    along it.
     """
     # imported late: scipy loads slowly
     from scipy.special import beta, betainc

@@ -163,7 +163,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     unit
         Unit as an instrument or a person writes it: ``"mm/s"``, ``"µm"``, ``"gf"``, ``"degC"``.
     si_unit
-        The unit wanted: ``"m/s"``, ``"K"``.
+        The requested unit: ``"m/s"``, ``"K"``.
     bare
         Meaning of a unit per time or length that names neither cycles nor radians, like
         ``"1/min"``; default from `tribolab.units.reciprocals.usual_reading`.
@@ -258,7 +258,7 @@ def to_si(
     value
         Text with a number and a unit, or a bare number in `si_unit`.
     si_unit
-        The SI unit wanted.
+        The requested SI unit.
     name
         Name of the value for the user, for the error message.
     bare

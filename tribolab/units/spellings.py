@@ -25,7 +25,7 @@ def _load() -> _Spellings:
     return result
 
 
-MICRO = "\u00b5\u03bc"  # the sign, and the Greek letter that stands for it
+MICRO = "\u00b5\u03bc"  # the sign, and the Greek letter used for it
 _SPELT = _load()
 _PREFIXES = {"nano": "n", "micro": "u", "milli": "m", "kilo": "k"}
 _APART = re.compile(rf"(?i:(?P<prefix>{'|'.join(_PREFIXES)}))[\s-]+(?=(?:N|Pa|V|A|g|m|s)(?![a-z]))")

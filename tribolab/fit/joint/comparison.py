@@ -127,10 +127,10 @@ def compare_shear_stress_models(
     Notes
     -----
     The more conservative of two criteria is used: the evidence, which penalises the flexibility of
-    a model and depends on the priors; and leave-one-out cross-validation over the loads, ``sum_l ln
-    p(y_l | other loads)``, which measures prediction and hardly depends on them. Odds below e (2.7)
-    are no preference, above e^3 (20) strong [1]_. If the two differ in sign the data do not decide.
-    A preferred model with fewer free parameters is called sufficient.
+    a model and depends on the priors; and leave-one-out cross-validation over the loads,
+    ``sum_l ln p(y_l | other loads)``, which measures prediction and hardly depends on them. Odds
+    below e (2.7) are no preference, above e^3 (20) strong [1]_. If the two differ in sign the data
+    do not decide. A preferred model with fewer free parameters is called sufficient.
 
     References
     ----------

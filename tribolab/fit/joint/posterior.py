@@ -19,7 +19,7 @@ _CORRELATED_GRID = np.array([0.06, 0.3, 0.6, 1.0, 1.5, 2.3])
 _MAX_WEIGHT_AT_END = 0.2
 _MAX_WIDENINGS = 5
 _MAX_DECREMENT = 1e-2  # of a mode that converges slowly
-_MIN_MODE_WEIGHT = 1e-4  # weight of a mode that requires convergence
+_MIN_MODE_WEIGHT = 1e-4  # weight above which a mode must have converged
 
 
 class Posterior(NamedTuple):

@@ -50,8 +50,8 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
     -----
     Means over blocks are fitted with a straight line plus a sine and its second harmonic, two to
     five periods in the record. Red noise drifts at all scales: a single wave explains three
-    quarters of it in less than one record of a hundred. A polynomial of fourth degree describes a
-    drift as well as a wave does.
+    quarters of it in fewer than 1 % of records. A wave is not reported if a polynomial of fourth
+    degree, such as a drift, fits as well.
 
     Examples
     --------

@@ -13,7 +13,7 @@ from tribolab.friction.oscillation.regularity import scatter
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT
 
 # columns that remain for a segment without oscillation
-_OF_NOISE = (
+_NOISE_COLUMNS = (
     "false_alarm_probability",
     "peak_prominence",
     "oscillation_swing",
@@ -193,7 +193,7 @@ def slip_columns(
     kinds = [class_of(e) for e in examined]
     # without oscillation, turning points of the noise are neither drops nor periods
     rows = [
-        nothing._replace(**{name: getattr(row, name) for name in _OF_NOISE})
+        nothing._replace(**{name: getattr(row, name) for name in _NOISE_COLUMNS})
         if kind in (CLASSES[0], NOT_CLEAR)
         else row
         for row, kind in zip(rows, kinds, strict=True)

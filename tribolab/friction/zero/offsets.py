@@ -14,8 +14,8 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
     """Return the number of the pair of each segment, -1 for none (segment).
 
     Neighbours in time of opposite direction pair if their speeds differ by no more than
-    `tolerance` of their mean and, where the run has set speeds and `tolerance` is no more than
-    usual, those agree.
+    `tolerance` of their mean. If the run has set speeds and `tolerance` is at most the default,
+    these must agree, too.
     """
     direction = segments["direction"].values
     speed = segments["sliding_speed"].values

@@ -252,7 +252,7 @@ def _unloaded(
 def _unloaded_parts(
     time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
-    """Return the samples of intervals, at any motion, that are partly unloaded.
+    """Return the longest constant, unloaded part of each interval, at any motion.
 
     A load that rises in the same interval passes every level: only a constant level is used.
     """

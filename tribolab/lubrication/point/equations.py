@@ -15,7 +15,7 @@ from tribolab.lubrication.mixed import NotConvergedError, Repulsion
 from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
 _STEPS = 25
-_CAP = 0.6  # largest relative change of the film in one step
+_MAX_CHANGE = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-8  # of the highest pressure, and of the load
 _LEAK = 1e-10  # share of the smooth conductance that remains below percolation
 _UNTOUCHED = 1e-13  # contact stiffness below which a cavity cell's pressure is fixed
@@ -186,7 +186,7 @@ def solve_point(
             break
         change, constant = _newton_step(problem, now, lack)
         moved = mesh.kernel @ change + constant
-        part = min(1.0, _CAP / float(np.max(np.abs(moved) / film)))
+        part = min(1.0, _MAX_CHANGE / float(np.max(np.abs(moved) / film)))
         state = PointState(state.pressure + part * change, state.constant + part * constant)
         film = film + part * moved if step % 8 else state.film(mesh)
     raise NotConvergedError(f"the residual is {errors[-1]:.1e} after {step} steps")

@@ -44,8 +44,8 @@ def strip_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[st
     -----
     At y = a sin t a strip carries (E* a^2/R) cos^2 t per length and has the modulus 4 E*/pi, while
     contact pressure and area are those of E*. Because liquid enters obliquely, the entrainment
-    speed is v' = 0.88 v cos^(5/3) t: ``mu = (1/F) int dy F' [mu_fluid(F', v') v/v' + sigma_f
-    kappa]``.
+    speed is v' = 0.88 v cos^(5/3) t:
+    ``mu = (1/F) int dy F' [mu_fluid(F', v') v/v' + sigma_f kappa]``.
     """
     contact, solver = system.contact, system.solver
     a, stiff = float(hertz_half_width(force, contact)), contact.effective_modulus

@@ -25,8 +25,8 @@ from tribolab.lubrication.speeds import System
 
 _SHARE = 0.375  # rings relative to the cells of a line contact: 60 for 160
 _SECTORS = 24
-_USUAL, _MORE = 4.0, 0.25  # extent for more rings, relative increase per decade
-_CLASS = 10.0  # films within this factor share a mesh
+_FAR_END, _EXTRA_RINGS = 4.0, 0.25  # extent for more rings, relative increase per decade
+_CLASS_RATIO = 10.0  # films within this factor share a mesh
 _THICK = 5.0  # film in roughnesses above which the solution starts from thick films
 _LIFTED = 0.5  # film of the lifted start, in gaps a^2/2R
 _GENTLE = 0.1  # fluid pressure of the first step from rest, relative to the contact pressure
@@ -87,12 +87,12 @@ def point_problem(system: System, force: float, speed: float) -> PointProblem:
             f"its middle, {SHORTEST * a:.3g} m here; got {extent:.3g} m"
         )
     film = expected_film(contact, liquid, force, speed) / gap if speed else 0.0
-    lowest = _CLASS ** np.floor(np.log10(max(film, 1e-30)) / np.log10(_CLASS))
+    lowest = _CLASS_RATIO ** np.floor(np.log10(max(film, 1e-30)) / np.log10(_CLASS_RATIO))
     decay = system.separation.decay_length / gap if system.separation else 0.0
     edge = float(f"{np.clip((max(decay, lowest) / 1.9) ** (2 / 3), 1e-3, 0.5):.2g}")
     size = float(np.sqrt(max(lowest, 1.0)))
-    wide = max(np.log10(extent / (a * size) / _USUAL), 0.0)
-    rings = round(_SHARE * system.solver.cells * (1 + _MORE * wide))
+    wide = max(np.log10(extent / (a * size) / _FAR_END), 0.0)
+    rings = round(_SHARE * system.solver.cells * (1 + _EXTRA_RINGS * wide))
     mesh = polar_mesh(rings, _SECTORS, edge, extent / a, size, contact.layer(a))
     pressure = contact.effective_modulus * gap / a
     return PointProblem(

@@ -114,8 +114,7 @@ def check_run(
     answers = _flag_unexamined(results_of_checks(checks, subject, resolved, left))
     results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()} | {MANUAL: BIT}
-    # an error of the time affects every signal; a correct time says nothing about the values
-    # of a signal
+    # an error of the time affects every signal; a correct time does not validate a signal's values
     of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
 
     def flags() -> Iterator[tuple[str, dict[str, np.ndarray]]]:

@@ -13,11 +13,11 @@ from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 
 _BLOCKS = {1: 20, 2: 4}  # blocks of the baseline along each axis of profiles and maps
 _WIDEST = {1: 0.04, 2: 0.2}  # share of all points; a wider feature is form, such as a chamfer
-_SCANNED = 50  # blocks of a profile in which a stuck stylus is looked for
+_STUCK_BLOCKS = 50  # blocks of a profile in which a stuck stylus is looked for
 _FEWEST_IN_BLOCK = 16
 # half widths of a noisy stop, in units of the blocks' roughness
 _BANDS = 0.02 * np.sqrt(2.0) ** np.arange(11)
-_PILE = 4.0  # ratio of points in the band at the end of the range to the next; summits give 1.4
+_PILE_RATIO = 4.0  # of points in the band at the end of the range to the next; summits give 1.4
 _TRIM = 20  # points that may share an end of the range with one outlier
 
 
@@ -129,10 +129,10 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
     >>> stuck_stretch(height, 0.08, 0.1)
     (1000, 2000)
     """
-    size = height.size // _SCANNED
+    size = height.size // _STUCK_BLOCKS
     if size < _FEWEST_IN_BLOCK:
         return None
-    blocks = height[: size * _SCANNED].reshape(_SCANNED, size)
+    blocks = height[: size * _STUCK_BLOCKS].reshape(_STUCK_BLOCKS, size)
     spread, noise = _line_scatter(blocks)
     usual = float(median(spread))
     still = (spread <= quiet * usual) & _is_white(spread, noise)
@@ -205,9 +205,9 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
     True
     """
     found = np.zeros(height.size, dtype=bool)
-    if height.size < _SCANNED * _FEWEST_IN_BLOCK:
+    if height.size < _STUCK_BLOCKS * _FEWEST_IN_BLOCK:
         return found
-    blocks = height[: height.size - height.size % _SCANNED].reshape(_SCANNED, -1)
+    blocks = height[: height.size - height.size % _STUCK_BLOCKS].reshape(_STUCK_BLOCKS, -1)
     scale, digit = float(median(_line_scatter(blocks)[0])), rounding_step(height)
     for sign in (1.0, -1.0):
         size = sign * height
@@ -217,7 +217,7 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
             at_end = size > top - width
             below = np.count_nonzero((size <= top - width) & (size > top - 2.0 * width))
             count = np.count_nonzero(at_end)
-            if count < max(share * size.size, _PILE * below):
+            if count < max(share * size.size, _PILE_RATIO * below):
                 continue
             if longest_run(at_end) >= in_a_row and _white_within(size, at_end):
                 found |= at_end

@@ -155,7 +155,7 @@ def pool_bands(
     weights
         Independent values (band).
     fewest
-        Independent values wanted in each pooled band.
+        Required number of independent values in each pooled band.
 
     Returns
     -------
@@ -192,7 +192,7 @@ def odd_one_out(
     logs
         Natural logarithms of the repeats' spectra (repeat, band).
     weights
-        Number of independent values behind each (band).
+        Number of independent values of each band (band).
     factor
         Smallest difference of a band, as a factor.
     certainty

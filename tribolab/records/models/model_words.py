@@ -17,8 +17,8 @@ _UNLIKELY = 0.05  # p value below which the order of the residuals' signs is sig
 _LARGE = 0.10  # share of the measured friction that any reader notices
 _CLOSE = 0.02  # share of the curve's peak
 _FAR = 0.3
-_APART = 2.0  # as a factor; beyond it the model does not describe the curve
-_BEYOND = 3.0  # standard errors
+_MAX_RATIO = 2.0  # as a factor; beyond it the model does not describe the curve
+_MAX_SIGMAS = 3.0  # standard errors
 _NOT_DESCRIBED = "the model does not describe this curve"
 _NO_STRESS = "no shear stress describes this curve"
 
@@ -98,7 +98,7 @@ def judgement(fit: xr.Dataset) -> str:
     share = np.abs(off) / np.maximum(np.abs(mu), 1e-12)
     worst = int(np.argmax(np.abs(off)))
     error = fit["friction_coefficient_residual_u"].values[used]
-    told = (mu > 0) & (mu - off > 0) & ~(np.abs(off) <= _BEYOND * error)
+    told = (mu > 0) & (mu - off > 0) & ~(np.abs(off) <= _MAX_SIGMAS * error)
     factor = float(np.exp(np.abs(np.log(mu[told] / (mu - off)[told])).max(initial=0.0)))
     parts = [_verdict(fit.attrs, np.abs(off).max() / np.abs(mu).max(), factor)]
     low, high = fit.attrs["valid_speed_low_m_s"], fit.attrs["valid_speed_high_m_s"]
@@ -148,7 +148,7 @@ def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
         )
     if largest > _FAR:
         return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of the peak friction"
-    if factor > _APART:
+    if factor > _MAX_RATIO:
         return f"{_NOT_DESCRIBED}: off by up to a factor of {number(factor, 2)}"
     trend = " and vary systematically with speed" if ordered else ""
     return (

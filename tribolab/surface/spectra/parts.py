@@ -10,8 +10,8 @@ from tribolab.surface.gaps import GapEffect, gap_effect, logarithm
 from tribolab.surface.spectra.binning import Bins, window
 from tribolab.surface.spectra.fourier import binned_power
 
-_LONG = 1 / 32  # of a profile; a longer gap splits the profile instead of being bridged
-_WORTH = 0.25  # of the longest part; a shorter part does not resolve long waves
+_LONG_GAP = 1 / 32  # of a profile; a longer gap splits the profile instead of being bridged
+_MIN_PART = 0.25  # of the longest part; a shorter part does not resolve long waves
 
 
 class Transform(NamedTuple):
@@ -103,7 +103,7 @@ def long_gaps(missing: np.ndarray) -> np.ndarray:
     >>> np.flatnonzero(long_gaps(row)).tolist()
     [20, 21, 22]
     """
-    least, long = max(2, int(_LONG * missing.shape[-1])), np.zeros(missing.shape, dtype=bool)
+    least, long = max(2, int(_LONG_GAP * missing.shape[-1])), np.zeros(missing.shape, dtype=bool)
     for row, gaps in zip(long, missing, strict=True):
         for start, stop in _stretches(gaps):
             row[start:stop] = stop - start >= least
@@ -182,7 +182,7 @@ def _parts(gaps: np.ndarray) -> list[tuple[int, int]]:
     """Return the intervals between gaps, without those that are short compared with the longest."""
     every = _stretches(~gaps)
     longest = max(stop - start for start, stop in every)
-    return [(start, stop) for start, stop in every if stop - start >= _WORTH * longest]
+    return [(start, stop) for start, stop in every if stop - start >= _MIN_PART * longest]
 
 
 def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np.ndarray]:

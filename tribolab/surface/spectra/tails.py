@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-_ENOUGH = 0.5  # share of a sampling length that must be measured
+_MIN_MEASURED = 0.5  # share of a sampling length that must be measured
 _POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}  # for a normal process: order, and its variance
 
 
@@ -36,7 +36,7 @@ def long_holes(missing: np.ndarray) -> np.ndarray:
     >>> long_holes(gap).tolist()
     [False, True]
     """
-    return np.asarray((~missing).mean(axis=-1).min(axis=-1) < _ENOUGH)
+    return np.asarray((~missing).mean(axis=-1).min(axis=-1) < _MIN_MEASURED)
 
 
 def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
@@ -70,7 +70,7 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
     """
     there = ~missing
     share = there.mean(axis=-1)
-    weight = np.where(share >= _ENOUGH, share, 0.0)
+    weight = np.where(share >= _MIN_MEASURED, share, 0.0)
     points = np.maximum(there.sum(axis=-1), 1)
     height = np.where(there, deviation, 0.0)
     square = (height**2).sum(axis=-1) / points
