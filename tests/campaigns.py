@@ -38,8 +38,8 @@ def simulated(
 def surfaces_alone(campaign: Path, normal_forces: tuple[str, ...] = ("31 N",)) -> Path:
     """Take the runs out of a campaign file, and state the loads that they told."""
     head, _, _ = campaign.read_text("utf-8").partition("[[run]]")
-    loads = f"[contact]\nnormal_forces = {list(normal_forces)}\n"
-    campaign.write_text(head.replace("[contact]\n", loads), "utf-8")
+    loads = f"\n[model]\nnormal_forces = {list(normal_forces)}\n"
+    campaign.write_text(head + loads, "utf-8")
     return campaign
 
 

@@ -22,7 +22,7 @@ def test_a_campaign_with_a_ball_has_its_contact_and_model(tmp_path):
     text = re.sub(r"(?m)^(radius|length) = .*\n", "", text)
     text = text.replace("[contact]\n", '[contact]\ngeometry = "ball"\nradius = "40 mm"\n')
     text += '\n[model]\noutlet = "flooded"\nuncertainty = "none"\npoints = 9\nslowest = "1 um/s"\n'
-    text += 'fastest = "1 mm/s"\n\n[joint]\ncompute = "never"\n'
+    text += 'fastest = "1 mm/s"\njoint = false\n'
     file.write_text(text, "utf-8")
     campaign = load_campaign(file)
     ball = campaign.contact.whole()

@@ -399,3 +399,28 @@ def test_true_is_no_number(folder):
     (folder / "campaign.toml").write_text(text)
     with pytest.raises(ConfigError, match="stroke_middle: true stands where a number or a text"):
         load_campaign(folder / "campaign.toml")
+
+
+OLD = '[joint]\ncompute = "never"\ndry = "dry"\n'
+
+
+def test_keys_of_the_last_release_are_moved_with_one_warning_each(folder):
+    old = WHOLE.replace("[contact]\n", '[contact]\narea = "corrected"\nnormal_forces = ["9 N"]\n')
+    with pytest.warns(FutureWarning, match="in the next release: write") as said:
+        before = load(folder, (old + OLD).replace("dry]", 'dry]\nwork_of_adhesion = "1 mJ/m^2"'))
+    where = [str(one.message).partition(": ")[2].split(" will be")[0] for one in said]
+    assert sorted(where) == [
+        "[contact] area",
+        "[contact] normal_forces",
+        "[joint] compute",
+        "[joint] dry",
+    ]
+    assert (before.model.area, before.model.normal_forces) == ("corrected", (9.0,))
+    assert (before.model.joint, before.model.dry_medium) == (False, "dry")
+
+
+def test_an_old_key_that_contradicts_the_new_one_is_refused(folder):
+    text = WHOLE.replace("[contact]\n", '[contact]\narea = "corrected"\n')
+    assert "line 6: contact.area: unknown key" in complaint(
+        folder, f'{text}[model]\narea = "persson"\n'
+    )

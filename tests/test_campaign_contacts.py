@@ -113,7 +113,7 @@ def test_every_contact_has_its_own_curve_model_and_spectrum(tmp_path):
     text = text.replace(entry, "\n\n".join(each))
     text += '\n[contact.soft]\nyoungs_modulus = "0.75 MPa"\n[contact.layer]\nthickness = "2 mm"\n'
     text += '[model]\nuncertainty = "none"\npoints = 9\nslowest = "1 um/s"\n'
-    text += 'fastest = "1 mm/s"\n[joint]\ncompute = "never"\n'
+    text += 'fastest = "1 mm/s"\njoint = false\n'
     file.write_text(text, "utf-8")
     made = process(load_campaign(file), tmp_path)
     names = ["Sb-S, soft", "Sb-S, layer"]

@@ -155,10 +155,9 @@ def test_a_joint_fit_of_the_same_curves_is_taken_over(outcome, campaign, tmp_pat
     one_load = {"curves": curves, "models": models[:1], "surfaces": surfaces}
     (bare,) = JointFits(campaign, **one_load, store=again.store).plan()
     assert bare.fingerprint != task.fingerprint
-    for compute in ("two loads", "never"):
-        settings = campaign.joint.model_copy(update={"compute": compute})
-        chosen = campaign.model_copy(update={"joint": settings})
-        assert JointFits(chosen, **one_load, store=again.store).plan() == []
+    settings = campaign.model.model_copy(update={"joint": False})
+    chosen = campaign.model_copy(update={"model": settings})
+    assert JointFits(chosen, **one_load, store=again.store).plan() == []
 
 
 @pytest.mark.slow

@@ -196,11 +196,11 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     text = campaign.read_text("utf-8")
     for line, more in (
         ("viscosity =", 'viscosity_range = ["1.2 Pa s", "1.6 Pa s"]'),
-        ("youngs_modulus =", 'youngs_modulus_range = ["1.4 MPa", "1.6 MPa"]\narea = "corrected"'),
+        ("youngs_modulus =", 'youngs_modulus_range = ["1.4 MPa", "1.6 MPa"]'),
     ):
         text = re.sub(rf"^({line}.*)$", rf"\1\n{more}", text, flags=re.M)
     file, folder = campaign.with_name("ranges.toml"), campaign.parent / "ranges"
-    text += '\n[model]\npoints = 9\ninlet_length = "40 mm"\n'
+    text += '\n[model]\npoints = 9\narea = "corrected"\ninlet_length = "40 mm"\n'
     for name, size in (("load", "2 %"), ("radius", "1 %")):
         text += f'\n[uncertainty.{name}]\nvalue = "{size}"\nas = "standard"\n'
     file.write_text(text, "utf-8")

@@ -95,7 +95,7 @@ def test_roughness_does_not_wait_for_a_spectrum_where_no_contact_is_asked_about(
     # a contact of it cannot be computed: that fails, and is not passed over
     body = 'radius = "10 mm"\nlength = "20 mm"\nyoungs_modulus = "2 MPa"\npoisson_ratio = 0.5\n'
     asked = f"{alone}[contact]\n{body}"
-    (tmp_path / "campaign.toml").write_text(asked + 'normal_forces = ["30 N"]\n')
+    (tmp_path / "campaign.toml").write_text(asked + '[model]\nnormal_forces = ["30 N"]\n')
     failed = CliRunner().invoke(app, ["run", str(tmp_path / "campaign.toml")])
     assert failed.exit_code != 0 and "wavenumbers can be trusted" in failed.output, failed.output
 

@@ -27,9 +27,9 @@ CHOSEN = """
 [model]
 uncertainty = "none"
 adhesion = true
-[joint]
+area = "corrected"
 together = ["Sb-S", "Sb-R"]
-dry = "dry"
+dry_medium = "dry"
 [rubber]
 prony_moduli = ["10 MPa", "100 MPa"]
 prony_times = ["10 us", "0.1 us"]
@@ -54,8 +54,7 @@ def results(tmp_path_factory):
         n_scans=1,
         rig=Rig(Protocol(speeds=SPEEDS)),
     )
-    text = file.read_text("utf-8").replace("[contact]\n", '[contact]\narea = "corrected"\n')
-    file.write_text(text + CHOSEN, "utf-8")
+    file.write_text(file.read_text("utf-8") + CHOSEN, "utf-8")
     made = process(load_campaign(file), folder)
     write_report(made, figures="none")
     return folder
@@ -241,10 +240,10 @@ scans = "*.csv"
 @pytest.mark.parametrize(
     ("extra", "said"),
     [
-        ('[joint]\ntogether = ["a", "b"]', r"no \[\[surface\]\] is called 'b'"),
-        ('[joint]\ntogether = ["a"]', "two surfaces or more"),
-        ('[joint]\ndry = "air"', r"there is no \[medium.air\]"),
-        ('[joint]\ndry = "water"', "wants a work_of_adhesion above zero"),
+        ('[model]\ntogether = ["a", "b"]', r"no \[\[surface\]\] is called 'b'"),
+        ('[model]\ntogether = ["a"]', "two surfaces or more"),
+        ('[model]\ndry_medium = "air"', r"there is no \[medium.air\]"),
+        ('[model]\ndry_medium = "water"', "wants a work_of_adhesion above zero"),
         ('[rubber]\nadhesion = "oil"', r"there is no \[medium.oil\]"),
         ('[rubber]\nprony_moduli = ["1 MPa"]', "prony_times: 0 for 1"),
         ('[rubber]\ntemperature = "40 °C"', "reference_temperature: wanted for the shift"),

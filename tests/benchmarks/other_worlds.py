@@ -226,12 +226,11 @@ def written(folder: Path, world: World, true: Truth) -> Path:
     parts = [
         f'[campaign]\nname = "world {world.seed}"\nraw = "raw"\n',
         f'[contact]\nradius = "{body.radius} m"\nlength = "{body.length} m"\n'
-        f'youngs_modulus = "{body.youngs_modulus} Pa"\npoisson_ratio = 0.5\n'
-        f'area = "{world.area}"\n',
+        f'youngs_modulus = "{body.youngs_modulus} Pa"\npoisson_ratio = 0.5\n',
         f'[medium.oil]\nviscosity = "{eta} Pa s"\n'
         f'viscosity_range = ["{eta / reach} Pa s", "{eta * reach} Pa s"]\n',
         f'work_of_adhesion = "{world.work} J/m^2"\n' if world.work else "",
-        f"[model]\nadhesion = {str(bool(world.work)).lower()}\n",
+        f'[model]\narea = "{world.area}"\nadhesion = {str(bool(world.work)).lower()}\n',
         "" if by_instrument else stated,
         '\n[[surface]]\nname = "turned"\nscans = "profiles/turned_*.csv"\n',
     ]

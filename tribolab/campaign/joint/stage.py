@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
 
 
-_FEWEST_LOADS = {"always": 1, "two loads": 2}
-
-
 class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
     """Stage of the joint fits.
 
@@ -63,8 +60,8 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
 
     def plan(self) -> list[JointTask]:
         """Return a task for each surface and liquid, and for each group of surfaces."""
-        settings = self._campaign.joint
-        if settings.compute == "never":
+        settings = self._campaign.model
+        if not settings.joint:
             return []
         groups: dict[tuple[tuple[str, ...], str], list[ModelRecord]] = {}
         for model in self._models:
@@ -77,11 +74,8 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             names = tuple(dict.fromkeys(model.outcome.surface for model in members))
             if len(names) > 1:
                 groups[names, medium] = members
-        fewest = _FEWEST_LOADS[settings.compute]
         return [
-            self._task(surfaces, medium, members)
-            for (surfaces, medium), members in groups.items()
-            if len({model.outcome.normal_force for model in members}) >= fewest
+            self._task(surfaces, medium, members) for (surfaces, medium), members in groups.items()
         ]
 
     def _task(
@@ -108,7 +102,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             enhancement=tuple(_enhancement(model) for model in ordered),
             dry=self._dry_curves(surfaces, medium),
             contacts={surface: contact.bodies() for surface, contact in contacts.items()},
-            area=contacts[surfaces[0]].area,
+            area=self._campaign.model.area,
             adhesion=self._campaign.model.adhesion,
             viscosity=liquid.value,
             viscosity_range=liquid.bounds,
@@ -133,7 +127,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
 
     def _dry_curves(self, surfaces: Sequence[str], medium: str) -> tuple[JointDry, ...]:
         """Return the friction of each surface without liquid, if the campaign uses it."""
-        name = self._campaign.joint.dry
+        name = self._campaign.model.dry_medium
         without, within = self._work_of_adhesion(name), self._work_of_adhesion(medium)
         if name is None or without is None or within is None:
             return ()

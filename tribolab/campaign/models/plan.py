@@ -22,6 +22,16 @@ if TYPE_CHECKING:
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 
 _95 = 1.959963984540054
+_ELSEWHERE = {  # keys of [model] that are no settings of one model's curve
+    "compute",
+    "uncertainty",
+    "adhesion",
+    "area",
+    "normal_forces",
+    "joint",
+    "together",
+    "dry_medium",
+}
 _DIGITS = 2  # digits of a repeatability; one more run should not change every model
 
 
@@ -133,7 +143,7 @@ def plan_models(
         return ()
     spread, freedom = _repeatability(done)
     known = {surface.outcome.name: surface for surface in surfaces}
-    settings = campaign.model.model_dump(exclude={"compute", "uncertainty", "adhesion"})
+    settings = campaign.model.model_dump(exclude=_ELSEWHERE)
     planned, led = [], set()
     for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):
         curve, surface = record.outcome, known.get(record.outcome.surface)
@@ -163,7 +173,7 @@ def plan_models(
             work_of_adhesion=work,
             work_of_adhesion_range=works,
             settings=settings,
-            area=contact.area,
+            area=campaign.model.area,
             leading=first,
             uncertain={"all": True, "none": False}.get(campaign.model.uncertainty, first),
             repeatability=spread,

@@ -26,7 +26,7 @@ from tribolab.campaign.settings.media import (
     medium_viscosity,
 )
 from tribolab.campaign.settings.table import Table
-from tribolab.campaign.settings.theory import Joint, Model, Rubber
+from tribolab.campaign.settings.theory import Model, Rubber
 from tribolab.core.untyped import Arguments, Json
 from tribolab.reading.dialect.uncertainty import Uncertainty
 
@@ -63,7 +63,6 @@ class Campaign(Table):
     friction: Friction = Friction()
     roughness: Roughness = Roughness()
     model: Model = Model()
-    joint: Joint = Joint()
     rubber: Rubber = Rubber()
     surface: tuple[Surface, ...] = ()
     run: tuple[RunEntry, ...] = ()

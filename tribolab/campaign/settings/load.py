@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.moved_keys import move_keys
 from tribolab.campaign.settings.naming.files_named import with_named_parts
 from tribolab.campaign.settings.naming.names import of_names
 from tribolab.campaign.settings.plan import PlannedRun, plan_runs
@@ -49,7 +50,9 @@ def load_campaign(path: str | Path) -> Campaign:
 def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
     """Read and check a campaign file, and return its runs with it; else as `load_campaign`."""
     missing = "'tribolab demo' makes a campaign to start from"
-    file = open_settings(settings_path(path, "campaign.toml"), Campaign, "campaign", missing)
+    file = open_settings(
+        settings_path(path, "campaign.toml"), Campaign, "campaign", missing, move_keys
+    )
     file.content.lies_at(file.path)
     # names first: no file is looked at with an instrument that nobody knows
     if wrong := of_names(file.content):

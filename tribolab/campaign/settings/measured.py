@@ -52,11 +52,6 @@ class Contact(Table):
     """Young's modulus of the cylinder or ball; default: rigid."""
     counter_poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the cylinder or ball."""
-    area: Literal["persson", "corrected", "numerics"] = "persson"
-    """Theory of the contact area: Persson's original theory; corrected for the lower elastic energy
-    of partial contact; or fitted to boundary elements."""
-    normal_forces: tuple[Annotated[float, PositiveSi("N", "31 N")], ...] = ()
-    """Additional normal forces for contact and adhesion; those of the runs are included."""
     modulus_file: SomeText | None = None
     """File of storage and loss modulus over frequency, relative to the raw folder."""
     sweep: int | SomeText | None = None

@@ -1,4 +1,4 @@
-"""Tables of the campaign file that choose what is computed: models, joint fits, rubber friction."""
+"""Tables of the campaign file that choose what is computed: models and rubber friction."""
 
 from __future__ import annotations
 
@@ -42,34 +42,30 @@ class Model(Table):
     adhesion: bool = False
     """Whether adhesion (the medium's work_of_adhesion) increases the solid contact area in the
     liquid; fitted shear stresses then refer to that area."""
+    area: Literal["persson", "corrected", "numerics"] = "persson"
+    """Theory of the contact area: Persson's original theory; corrected for the lower elastic energy
+    of partial contact; or fitted to boundary elements."""
+    normal_forces: tuple[Annotated[float, PositiveSi("N", "31 N")], ...] = ()
+    """Additional normal forces for contact and adhesion; those of the runs are included."""
+    joint: bool = True
+    """Whether to fit all loads of a surface in one liquid jointly, in addition to the single fits.
+    With one load the load exponent keeps its prior."""
+    together: tuple[SomeText, ...] = ()
+    """Surfaces to fit together; in one liquid they share its viscosity."""
+    dry_medium: SomeText | None = None
+    """Medium without liquid whose friction constrains the shear stress in the joint fit. The works
+    of adhesion and their ranges determine its larger contact area."""
     uncertainty: Literal["lowest load", "all", "none"] = "lowest load"
     """Loads of a surface for which the model uncertainty is computed."""
 
     @model_validator(mode="after")
-    def _ends_are_in_order(self) -> Self:
+    def _is_consistent(self) -> Self:
         for low, high, what in (
             (self.slowest, self.fastest, "slowest and fastest"),
             (*(self.fit_speeds or (0.0, 1.0)), "fit_speeds"),
         ):
             if not low < high:
                 raise ValueError(f"{what}: {low:g} m/s is not below {high:g} m/s")
-        return self
-
-
-class Joint(Table):
-    """Joint fit of all loads of a surface in one liquid, in addition to the single fits."""
-
-    compute: Literal["always", "two loads", "never"] = "always"
-    """When to do it: always (with one load the load exponent keeps its prior), with at least two
-    loads, or never."""
-    together: tuple[SomeText, ...] = ()
-    """Surfaces to fit together; in one liquid they share its viscosity."""
-    dry: SomeText | None = None
-    """Medium without liquid whose friction constrains the shear stress. The works of adhesion and
-    their ranges determine its larger contact area."""
-
-    @model_validator(mode="after")
-    def _are_several(self) -> Self:
         if len(set(self.together)) == 1:
             raise ValueError("together: two surfaces or more are wanted")
         return self

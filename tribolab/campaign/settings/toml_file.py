@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -13,6 +14,7 @@ from tribolab.campaign.settings import problems
 from tribolab.core.errors import ConfigError, ReadError, shown
 from tribolab.core.limit import Limit
 from tribolab.core.provenance import escape_controls
+from tribolab.core.untyped import Json
 from tribolab.reading.raw.source import check_regular
 
 MOST_TABLES = Limit(
@@ -77,7 +79,11 @@ def settings_path(path: str | Path, name: str) -> Path:
 
 
 def open_settings(
-    path: Path, model: type[SettingsModel], kind: str, missing: str = ""
+    path: Path,
+    model: type[SettingsModel],
+    kind: str,
+    missing: str = "",
+    update: Callable[[Path, Json], None] | None = None,
 ) -> Opened[SettingsModel]:
     """Read a file and check it against its model.
 
@@ -91,6 +97,8 @@ def open_settings(
         What such a file is called.
     missing
         What to do if there is none.
+    update
+        Function that moves old keys to their present place.
 
     Raises
     ------
@@ -112,6 +120,8 @@ def open_settings(
     except (RecursionError, ValueError) as error:
         raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
     _check_entries(path, content)
+    if update is not None:
+        update(path, content)
     try:
         return Opened(path, text, model.model_validate(content, context={"in_file": True}))
     except ValidationError as error:

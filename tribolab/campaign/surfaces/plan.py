@@ -106,11 +106,8 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
         if load is not None and load > 0
     ]
     pairs = contact_pairs(campaign, [surface for surface, _ in known])
-    stated = {
-        pair.label: [float(f"{force:.4g}") for force in pair.contact.normal_forces]
-        for pair in pairs
-    }
-    every = [force for _, force in known] + [force for each in stated.values() for force in each]
+    stated = [float(f"{force:.4g}") for force in campaign.model.normal_forces]
+    every = [force for _, force in known] + stated
     media = tuple(
         PlannedMedium(name, work, *(medium.work_of_adhesion_range or (work, work)))
         for name, medium in campaign.medium.items()
@@ -132,11 +129,9 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "instrument": instrument,
             "roughness": campaign.roughness.model_dump(exclude_none=True),
             "contact": contact.bodies(),
-            "area": contact.area,
+            "area": campaign.model.area,
             "forces": tuple(
-                sorted(
-                    {*stated[pair.label], *(force for name, force in known if name == pair.label)}
-                )
+                sorted({*stated, *(force for name, force in known if name == pair.label)})
             ),
             "lowest_force": min(every, default=None),
             "media": media,

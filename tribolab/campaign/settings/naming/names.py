@@ -113,18 +113,18 @@ def _of_flow_curve(campaign: Campaign, name: str, medium: Medium) -> list[Settin
 
 
 def _of_theory(campaign: Campaign) -> list[SettingsProblem]:
-    """Surfaces and media that [joint] and [rubber] name, and a modulus that is stated twice."""
+    """Surfaces and media that [model] and [rubber] name, and a modulus that is stated twice."""
     wrong = []
     surfaces = [pair.label for pair in contact_pairs(campaign)]
-    for name in campaign.joint.together:
+    for name in campaign.model.together:
         if name not in surfaces:
             what = f"no [[surface]] is called '{shown(name)}'{nearest(name, surfaces)}"
-            wrong.append(SettingsProblem(("joint", "together"), what))
-    if len({contact_of_label(campaign, name).geometry for name in campaign.joint.together}) > 1:
+            wrong.append(SettingsProblem(("model", "together"), what))
+    if len({contact_of_label(campaign, name).geometry for name in campaign.model.together}) > 1:
         what = "a ball and a cylinder have no load in common; fit them alone"
-        wrong.append(SettingsProblem(("joint", "together"), what))
+        wrong.append(SettingsProblem(("model", "together"), what))
     for table, key, medium in (
-        ("joint", "dry", campaign.joint.dry),
+        ("model", "dry_medium", campaign.model.dry_medium),
         ("rubber", "adhesion", campaign.rubber.adhesion),
     ):
         if medium is not None and medium not in campaign.medium:
