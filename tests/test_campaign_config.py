@@ -406,10 +406,12 @@ OLD = '[joint]\ncompute = "never"\ndry = "dry"\n'
 
 def test_keys_of_the_last_release_are_moved_with_one_warning_each(folder):
     old = WHOLE.replace("[contact]\n", '[contact]\narea = "corrected"\nnormal_forces = ["9 N"]\n')
+    old = old.replace("cycles = true", 'cycles = true\nmount = "2"')
     with pytest.warns(FutureWarning, match="in the next release: write") as said:
         before = load(folder, (old + OLD).replace("dry]", 'dry]\nwork_of_adhesion = "1 mJ/m^2"'))
     where = [str(one.message).partition(": ")[2].split(" will be")[0] for one in said]
     assert sorted(where) == [
+        "[[run]] mount",
         "[contact] area",
         "[contact] normal_forces",
         "[joint] compute",
@@ -417,6 +419,7 @@ def test_keys_of_the_last_release_are_moved_with_one_warning_each(folder):
     ]
     assert (before.model.area, before.model.normal_forces) == ("corrected", (9.0,))
     assert (before.model.joint, before.model.dry_medium) == (False, "dry")
+    assert before.run[-1].labels == {"mount": "2"}
 
 
 def test_an_old_key_that_contradicts_the_new_one_is_refused(folder):

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.moved_keys import move_keys
 from tribolab.core.errors import AnalysisError, ReadError, brief
 from tribolab.core.untyped import Json
 
@@ -112,7 +113,9 @@ class Folder:
 def _campaign(text: str) -> Campaign | None:
     """Read a campaign file, cached because archives often repeat it."""
     try:
-        return Campaign.model_validate(tomllib.loads(text), context={"in_file": True})
+        content = tomllib.loads(text)
+        move_keys(content)  # results of the last release
+        return Campaign.model_validate(content, context={"in_file": True})
     except (ValueError, RecursionError):
         return None
 

@@ -18,8 +18,6 @@ from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.naming.named import is_named
 from tribolab.comparison.folder import Folder, open_folder
 
-_KEYS = ("operator", "mount", "day", "specimen")
-
 
 def labelled_segments(place: str | Path) -> pd.DataFrame:
     """Return the table of friction of a campaign, with the labels of each row's run.
@@ -74,12 +72,10 @@ def _entry_of(campaign: Campaign, run: Mapping[str, Any]) -> RunEntry | None:
 
 
 def _entry_labels(entry: RunEntry, file: str, files_named: str | None) -> dict[str, str]:
-    stated = {key: getattr(entry, key) for key in _KEYS}
     named = {}
     if files_named is not None:
         pattern = NamePattern(files_named, whole_words=True)
         named = pattern.labels(PurePosixPath(file).stem)
     if entry.labels_in_name is not None:
         named |= NamePattern(entry.labels_in_name).labels(PurePosixPath(file).stem)
-    known = {key: value for key, value in stated.items() if value is not None}
-    return {**entry.labels, **named, **known}
+    return named | entry.labels

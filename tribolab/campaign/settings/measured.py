@@ -156,16 +156,9 @@ class RunEntry(Table):
     the critical stiffness for stick-slip."""
     rectified: bool | None = None
     """Whether friction was recorded without its sign; default: found from the reversals."""
-    operator: SomeText | None = None
-    """Operator. This and the next five keys are for `tribolab lab repeatability`."""
-    mount: SomeText | None = None
-    """Mounting of the specimen."""
-    day: SomeText | None = None
-    """Day of the measurement; default: from the files."""
-    specimen: SomeText | None = None
-    """Specimen."""
     labels: dict[SomeText, SomeText] = {}
-    """Other labels that distinguish runs, e.g. labels.batch = "7"."""
+    """Labels for `tribolab lab repeatability`, e.g. { operator = "Ann", mount = "2" }. Default of
+    `day`: from the files."""
     labels_in_name: LabelPattern | None = None
     """Position of labels in a file's name, without extension: "*_{mount}_{operator}_*". {} matches
     letters and digits, * matches anything."""

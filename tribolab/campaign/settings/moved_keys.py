@@ -1,10 +1,6 @@
-"""Keys of older campaign files, moved to their present place with a warning for each."""
+"""Keys of older campaign files, moved to their present place."""
 
 from __future__ import annotations
-
-import multiprocessing
-import warnings
-from pathlib import Path
 
 from tribolab.core.untyped import Json
 
@@ -15,42 +11,62 @@ _TO_MODEL = {  # table and key before: key in [model] now
     ("contact", "normal_forces"): "normal_forces",
 }
 _COMPUTE = {"always": True, "two loads": True, "never": False}  # [joint] compute, before
+_LABELS = ("operator", "mount", "day", "specimen")  # keys of [[run]], before
 
 
-def move_keys(path: Path, content: Json) -> None:
-    """Move old keys in the content of a campaign file to their present place.
+def move_keys(content: Json) -> list[str]:
+    """Move old keys in the content of a campaign file, and return a line for each.
 
     A key that contradicts its present place remains where it is, and is then an unknown key.
 
     Examples
     --------
     >>> content = {"joint": {"compute": "never"}}
-    >>> with warnings.catch_warnings(record=True) as said:
-    ...     warnings.simplefilter("always")
-    ...     move_keys(Path("campaign.toml"), content)
+    >>> move_keys(content)
+    ['[joint] compute will be removed in the next release: write [model] joint = false']
     >>> content
     {'model': {'joint': False}}
-    >>> print(said[0].message)
-    campaign.toml: [joint] compute will be removed in the next release: write [model] joint = false
     """
+    return _move_labels(content) + _move_to_model(content)
+
+
+def _move_to_model(content: Json) -> list[str]:
+    said: list[str] = []
     model = content.get("model", {})
     if not isinstance(model, dict):
-        return
+        return said
     for (table, old), new in _TO_MODEL.items():
         for name, before in _tables(content, table):
             if old in before and model.get(new, before[old]) == before[old]:
                 model[new] = before.pop(old)
-                _warn(path, f"[{name}] {old}", f"[model] {new}")
+                said.append(_line(f"[{name}] {old}", f"[model] {new}"))
     for name, before in _tables(content, "joint"):
         now = _COMPUTE.get(str(before.get("compute")))
         if now is not None and model.get("joint", now) == now:
             model["joint"] = now
             del before["compute"]
-            _warn(path, f"[{name}] compute", f"[model] joint = {str(now).lower()}")
+            said.append(_line(f"[{name}] compute", f"[model] joint = {str(now).lower()}"))
     if content.get("joint") == {}:
         del content["joint"]
     if model:
         content["model"] = model
+    return said
+
+
+def _move_labels(content: Json) -> list[str]:
+    said: list[str] = []
+    runs = content.get("run")
+    tables = [run for run in runs if isinstance(run, dict)] if isinstance(runs, list) else []
+    for key in _LABELS:
+        moved = False
+        for run in tables:
+            labels = run.get("labels", {})
+            if key in run and isinstance(labels, dict) and key not in labels:
+                run["labels"] = {**labels, key: run.pop(key)}
+                moved = True
+        if moved:
+            said.append(_line(f"[[run]] {key}", f"[[run]] labels.{key}"))
+    return said
 
 
 def _tables(content: Json, name: str) -> list[tuple[str, Json]]:
@@ -62,8 +78,5 @@ def _tables(content: Json, name: str) -> list[tuple[str, Json]]:
     return [(name, table), *named]
 
 
-def _warn(path: Path, old: str, now: str) -> None:
-    """Warn of an old key, but not in every worker."""
-    if multiprocessing.parent_process() is None:
-        text = f"{path}: {old} will be removed in the next release: write {now}"
-        warnings.warn(text, FutureWarning, stacklevel=5)
+def _line(old: str, now: str) -> str:
+    return f"{old} will be removed in the next release: write {now}"

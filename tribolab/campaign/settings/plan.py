@@ -196,7 +196,7 @@ def _zero_stated_at(campaign: Campaign, number: int) -> str:
 
 def _label(entry: RunEntry, file: Path, key: Literal["mount", "specimen"]) -> str:
     """Return the mount or the specimen of a run, as stated or as in the file's name."""
-    stated = getattr(entry, key)
+    stated = entry.labels.get(key)
     if stated is not None or entry.labels_in_name is None:
         return stated or ""
     return NamePattern(entry.labels_in_name).labels(file.stem).get(key, "")
@@ -296,7 +296,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "moving_mass": entry.moving_mass,
         "blank": [sha256_of_file(blank) if blank.is_file() else "" for blank in blanks],
     }
-    mounts = [entry.mount, entry.specimen, entry.labels_in_name]
+    mounts = [entry.labels.get("mount"), entry.labels.get("specimen"), entry.labels_in_name]
     return settings | {
         "instrument": instrument,
         "config_sha256": sha256_of(settings | reading | {"mount": mounts}),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import tomllib
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -83,7 +85,7 @@ def open_settings(
     model: type[SettingsModel],
     kind: str,
     missing: str = "",
-    update: Callable[[Path, Json], None] | None = None,
+    update: Callable[[Json], list[str]] | None = None,
 ) -> Opened[SettingsModel]:
     """Read a file and check it against its model.
 
@@ -98,7 +100,7 @@ def open_settings(
     missing
         What to do if there is none.
     update
-        Function that moves old keys to their present place.
+        Function that moves old keys to their present place and returns a line for each.
 
     Raises
     ------
@@ -121,12 +123,19 @@ def open_settings(
         raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
     _check_entries(path, content)
     if update is not None:
-        update(path, content)
+        _warn(path, update(content))
     try:
         return Opened(path, text, model.model_validate(content, context={"in_file": True}))
     except ValidationError as error:
         wrong = problems.from_pydantic(error, model)
         raise ConfigError(problems.message(wrong, path, text)) from error
+
+
+def _warn(path: Path, lines: list[str]) -> None:
+    """Warn of old keys, but not in every worker."""
+    if multiprocessing.parent_process() is None:
+        for line in lines:
+            warnings.warn(f"{path}: {line}", FutureWarning, stacklevel=5)
 
 
 def _check_entries(path: Path, content: dict[str, object]) -> None:
