@@ -74,8 +74,8 @@ def rough_point_contact(
     Returns
     -------
     xarray.Dataset
-        Over ``radius`` [m]: ``pressure`` [Pa], ``separation`` [m], ``contact_area_ratio`` [1]; and
-        the scalars ``max_pressure`` [Pa], ``central_separation`` [m] and
+        Over ``radial_distance`` [m]: ``pressure`` [Pa], ``separation`` [m],
+        ``contact_area_ratio`` [1]; scalars ``max_pressure`` [Pa], ``central_separation`` [m] and
         ``friction_per_shear_stress`` [1/Pa], real area over the load. Attributes: ``residual``,
         ``load_balance`` and ``steps``, as for `rough_line_contact`.
 

@@ -30,7 +30,7 @@ def error_from_blocks(
     xarray.Dataset
         On dim ``block_length`` [samples]: ``standard_error`` [unit of the signal], its own standard
         error ``standard_error_std`` and the number of ``blocks``. Once a block is longer than the
-        signal's memory, the standard error no longer depends on the length.
+        correlation time, the standard error no longer depends on the length.
 
     Raises
     ------

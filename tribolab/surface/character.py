@@ -143,7 +143,7 @@ def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
 
 
 def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:
-    """Return the ratio of rms slopes along and across the lay of maps (..., y, x), 1 if none."""
+    """Return the ratio of rms slopes along and across the lay (..., y, x); 1 without a lay."""
     height = height.reshape(-1, *height.shape[-2:])
     along_x = np.diff(height, axis=-1)[..., :-1, :] / step_x
     along_y = np.diff(height, axis=-2)[..., :, :-1] / step_y

@@ -90,7 +90,7 @@ def _strongest(rest: np.ndarray, grid: _Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _may_have_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
-    """Return whether the strongest wave on the grid is near the limit of acceptance (record)."""
+    """Return whether the strongest wave on the grid exceeds half the limit (record)."""
     if not len(rest):
         return np.zeros(0, bool)
     place, size = _strongest(rest, grid)
