@@ -111,6 +111,7 @@ def test_a_goal_out_of_reach_is_no_success_and_a_goal_in_reach_is_named(tmp_path
     assert tl.measuring_plan(table, standard_error=1.1 * within).table.runs.max() <= 20
     assert 'class="banner incomplete"' in write_plan(plan, "p", tmp_path).read_text("utf-8")
     reached = tl.measuring_plan(table, standard_error=0.01)
+    assert reached._repr_html_().count("<tr") == 1 + len(reached.table)
     assert 'class="banner complete"' in write_plan(reached, "p", tmp_path).read_text("utf-8")
 
 

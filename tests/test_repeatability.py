@@ -115,6 +115,8 @@ def measured(rng, mounts=6, runs=3, between=0.04, within=0.02):
 def test_components_are_told_per_speed_and_pooled():
     told = tl.repeatability(measured(np.random.default_rng(5), mounts=40), "medium:mount")
     assert told.method == "restricted maximum likelihood"
+    shown = told._repr_html_()
+    assert "by medium:mount" in shown and shown.count("<tr") == 1 + len(told.table)
     last = told.table.iloc[-1]
     assert told.table.speed.tolist() == ["100 µm/s", "1 mm/s", "all speeds"]
     assert last.repeatability_std == pytest.approx(0.02, rel=0.15)

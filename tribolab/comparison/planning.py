@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -64,6 +65,11 @@ class MeasuringPlan:
     assurance: float
     setup_time: float
     is_interval: bool = False
+
+    def _repr_html_(self) -> str:
+        """Return HTML of the goal and the table of runs."""
+        shown = self.table.to_html(index=False, float_format="{:.3g}".format)
+        return f"<p><b>Runs for {html.escape(self.goal)}</b></p>{shown}"
 
 
 def measuring_plan(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -57,6 +58,12 @@ class Repeatability:
     mandel: pd.DataFrame
     method: str
     levels: dict[str, int]
+
+    def _repr_html_(self) -> str:
+        """Return HTML of the method and the table of components."""
+        shown = self.table.to_html(index=False, float_format="{:.3g}".format)
+        by = html.escape(", ".join(self.by))
+        return f"<p><b>Repeatability by {by}</b>, {self.method}</p>{shown}"
 
 
 def repeatability(
