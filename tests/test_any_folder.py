@@ -53,7 +53,7 @@ def folder(tmp_path):
 @pytest.mark.slow
 def test_a_folder_of_raw_files_is_analysed_and_its_repeats_are_one_curve(folder, monkeypatch):
     monkeypatch.chdir(folder)
-    done = command("run", "--figures", "none")
+    done = command("run")
     assert done.exit_code == 0, done.output
     said = tomllib.loads((folder / "campaign.toml").read_text("utf-8"))
     assert said["campaign"]["files_named"] == "{surface}_{medium}_{normal_force}_{repeat}"
@@ -90,7 +90,7 @@ def test_the_options_state_what_a_file_does_not(tmp_path, monkeypatch):
     refused = command("run", "disc.csv")
     assert refused.exit_code == 3 and "State --radius 15mm" in refused.output
     assert command("check", "disc.csv", "--radius", "15mm").exit_code == 0
-    done = command("run", "disc.csv", "--radius", "15mm", "--figures", "none")
+    done = command("run", "disc.csv", "--radius", "15mm")
     assert done.exit_code == 0 and re.search(r"0\.2\d*", done.output), done.output
     wrong = command("run", "disc.csv", "--radius", "15 N")
     assert wrong.exit_code == 2 and "--radius" in wrong.output

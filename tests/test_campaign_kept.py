@@ -27,7 +27,7 @@ SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.jso
 
 
 RUNS = (RUNS[0], RUNS[2])  # of a campaign without repeats
-QUIET = ("-q", "-j", "1", "--figures", "none")
+QUIET = ("-q", "-j", "1")
 ROWS = ModelRows(None, ({"sliding_speed_m_s": 1e-3, "friction_coefficient": 0.5},))
 
 

@@ -24,8 +24,6 @@ from tribolab.qc.scan.checks import SCAN_CHECKS
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.rig.files import scan_file
 
-BARE = ("--figures", "none")  # where they are not looked at
-
 
 def written(path, height, x):
     text = scan_file(x, height).decode()
@@ -179,7 +177,7 @@ def test_a_failed_scan_gives_exit_code_1_and_stands_in_every_result(tmp_path, sc
     text = re.sub(r"(?m)^work_of_adhesion.*\n", "", text)
     text += "\n[qc.limits.dropouts]\nfail = 0.1\n"
     campaign.write_text(text, "utf-8")
-    done = CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1", *BARE])
+    done = CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1"])
     assert done.exit_code == 1
     assert "checks failed: scans of Sb-R" in done.output
     results = campaign.parent / "results"
@@ -196,4 +194,4 @@ def test_a_failed_scan_gives_exit_code_1_and_stands_in_every_result(tmp_path, sc
     [spectrum, *_] = figures_of(results)["surfaces-spectra"]["series"]
     assert spectrum["label"] == "Sb-R (bad scans)"
     campaign.write_text(text + '\n[qc]\nfail_on = "never"\n', "utf-8")
-    assert CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1", *BARE]).exit_code == 0
+    assert CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1"]).exit_code == 0

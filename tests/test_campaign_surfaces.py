@@ -255,7 +255,7 @@ def test_one_bad_scan_is_left_out_and_named(tmp_path, profiles):
 def test_a_bad_scan_stands_in_the_findings_and_fails_the_command(campaign, outcome, tmp_path):
     mine = copied(campaign, tmp_path)
     (mine.parent / "raw/profiles/sb-r_2.csv").write_text("x [mm],z [um]\n1,2\n")
-    done = CliRunner().invoke(app, ["run", str(mine), "-q", "-j", "1", "--figures", "none"])
+    done = CliRunner().invoke(app, ["run", str(mine), "-q", "-j", "1"])
     assert done.exit_code == 3
     assert "surface Sb-R: scan raw/profiles/sb-r_2.csv is left out" in done.stderr
     assert "1 of 1 surface: spectrum, contact, adhesion" in done.stdout

@@ -29,7 +29,7 @@ def roughness_of(folder):
 def test_surfaces_without_runs_have_their_report(tmp_path):
     made = rig.simulate_campaign(tmp_path / "c", seed=3, small=True, surfaces=("Sb-R",))
     campaign = surfaces_alone(made, ("31 N", "91 N"))
-    command = ["run", str(campaign), "-j", "1", "-q", "--figures", "none"]
+    command = ["run", str(campaign), "-j", "1", "-q"]
     done = CliRunner().invoke(app, command)
     assert done.exit_code == 0, done.output
     assert "1 of 1 surface: spectrum, contact, adhesion" in done.output.splitlines()

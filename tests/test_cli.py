@@ -25,8 +25,6 @@ from tribolab.app.progress import progress_bars
 from tribolab.campaign.settings.analysed import Qc
 from tribolab.records.parts import ModelOutcome
 
-BARE = ("--figures", "none")  # where they are not looked at
-FEW = ("--figures", "curves")
 ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}
 
 
@@ -58,7 +56,7 @@ def original(tmp_path_factory):
 @pytest.fixture(scope="module")
 def analysed(original):
     """The campaign with results, and what `tribolab run` said."""
-    return original, told("run", original, "--jobs", 1, *FEW)
+    return original, told("run", original, "--jobs", 1)
 
 
 @pytest.fixture
@@ -105,10 +103,17 @@ def test_a_run_says_in_few_lines_what_came_out(analysed):
     json.loads((results / "report.json").read_text(encoding="utf-8"))
 
 
+def test_old_options_of_figures_name_the_command_that_draws_them(tmp_path):
+    done = told("run", tmp_path / "none.toml", "--figures", "all", "--pdf")
+    for option in ("--figures", "--pdf"):
+        said = f"tribolab: {option} will be removed in the next release: 'tribolab figures'"
+        assert said in done.stderr
+
+
 @pytest.mark.slow
 def test_a_second_run_leaves_everything_as_it_is(campaign):
     before = fingerprint(campaign.parent)
-    done = told("run", campaign.parent, "--jobs", 1, *FEW)
+    done = told("run", campaign.parent, "--jobs", 1)
     assert done.returncode == 0
     assert "2 unchanged since the last time" in done.stdout
     assert fingerprint(campaign.parent) == before
@@ -118,7 +123,7 @@ def test_a_second_run_leaves_everything_as_it_is(campaign):
 def test_another_title_makes_another_report_of_the_same_data(campaign):
     text = campaign.read_text(encoding="utf-8")
     campaign.write_text(text.replace('name = "PMMA', 'name = "Plexiglas', 1), encoding="utf-8")
-    done = told("run", campaign, "--jobs", 1, *FEW)
+    done = told("run", campaign, "--jobs", 1)
     assert "2 unchanged since the last time" in done.stdout
     assert "Plexiglas" in (campaign.parent / "results/report.html").read_text(encoding="utf-8")
     assert sorted(path.name for path in campaign.parent.iterdir()) == [
@@ -129,7 +134,7 @@ def test_another_title_makes_another_report_of_the_same_data(campaign):
 @pytest.mark.slow
 def test_a_bad_file_gives_exit_code_3_and_results_of_the_others(campaign, tmp_path):
     (campaign.parent / "raw/friction/sb-r_dry_31N_01_force.csv").write_text("Time [s]\n")
-    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1, *BARE)
+    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1)
     assert done.returncode == 3
     assert "1 of 2 runs" in done.stdout
     assert done.stderr.startswith("tribolab: sb-r_dry_31N_01 failed: ")
@@ -200,7 +205,7 @@ def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path)
     text = campaign.read_text(encoding="utf-8")
     text = text.replace("[segments]\ntrim = 0.10\n", '[segments]\nmin_duration = "1000 h"\n')
     campaign.write_text(text, encoding="utf-8")
-    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1, *BARE)
+    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1)
     assert done.returncode == 3
     assert "no run contains a segment of constant speed" in done.stderr
 
@@ -283,7 +288,7 @@ def test_a_run_that_is_killed_leaves_the_old_results_and_the_next_completes(camp
     assert process.returncode == -signal.SIGKILL
     assert fingerprint(results) == before
     assert list(campaign.parent.glob(".results.tribolab-*"))
-    done = told("run", campaign, "--jobs", 1, *BARE)
+    done = told("run", campaign, "--jobs", 1)
     assert done.returncode == 0
     assert "unchanged" not in done.stdout
     assert list(campaign.parent.glob(".results.tribolab-*")) == []

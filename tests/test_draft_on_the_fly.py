@@ -110,7 +110,7 @@ def test_the_commands_take_the_same_way(good, unclear, tmp_path):
         f'[campaign]\nname = "a"\n[[run]]\nfiles = "{good.name}"\n'
         f'[[run]]\nfiles = "{unclear.name}"\n'
     )
-    made = command("run", tmp_path / "campaign.toml", "-q", "-j", "1", "--figures", "none")
+    made = command("run", tmp_path / "campaign.toml", "-q", "-j", "1")
     assert made.exit_code == 3 and "odd failed: " in made.stderr
     assert "column 1 'Zeit': time is in s (or ms, min); column 2" in made.stderr
     friction = (tmp_path / "results/tables/friction.csv").read_text()

@@ -31,7 +31,7 @@ def campaign(tmp_path):
 
 
 def run(*words) -> tuple[int, str]:
-    answer = CliRunner().invoke(app, ["run", *map(str, words), "-q", "-j", "1", "--figures=none"])
+    answer = CliRunner().invoke(app, ["run", *map(str, words), "-q", "-j", "1"])
     return answer.exit_code, " ".join(answer.output.split())
 
 

@@ -182,7 +182,7 @@ def test_a_run_that_is_rejected_is_in_no_curve_and_no_failure(original, tmp_path
     file = copied(original, tmp_path)
     text = entry(FROZEN, "reject", "its signal froze") + entry(LATE, "reject")
     (file.parent / REVIEW_FILE).write_text(text + entry(SOUND, "reject"), "utf-8")
-    told = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q", "--figures", "none"])
+    told = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q"])
     assert told.exit_code == 0, told.output
     assert "decided by hand: 3 runs rejected: see " in told.output
     results = read_results(file.parent / "results")
@@ -200,7 +200,7 @@ def test_a_decision_that_finds_nothing_is_told_and_stops_no_other(reviewed, tmp_
     text = path.read_text("utf-8") + entry(f"{SOUND}x", "reject")
     line = text[: text.index(f"{SOUND}x")].count("\n") + 1
     path.write_text(text + entry(SOUND, "reject", start=1.0, stop=2.0), "utf-8")
-    told = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q", "--figures", "none"])
+    told = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q"])
     assert told.exit_code == 3
     assert f"review.toml, line {line}: decision 5, run: no run is called '{SOUND}x'" in told.stderr
     assert f"did you mean '{SOUND}'" in told.stderr
@@ -213,7 +213,7 @@ def test_a_decision_that_finds_nothing_is_told_and_stops_no_other(reviewed, tmp_
     assert report["verdict"]["status"] == "incomplete"
     lost = read_results(file.parent / "results")["decisions"].set_index("run").loc[SOUND]
     assert lost.effect == "not applied: the run failed"
-    again = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q", "--figures", "none"])
+    again = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q"])
     assert again.exit_code == 3 and again.stderr == told.stderr
 
 

@@ -177,13 +177,13 @@ def test_a_file_that_cannot_be_read_leaves_nothing_that_hinders_the_next(tmp_pat
     assert "it is the height in um" in refused.output
     assert "tribolab info odd.txt --write" in refused.output and "[[surface]]" not in refused.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["odd.txt", "raw"]
-    done = CliRunner().invoke(cli.app, ["run", "raw/disc.csv", "--figures", "none"])
+    done = CliRunner().invoke(cli.app, ["run", "raw/disc.csv"])
     assert done.exit_code == 0 and "campaign.toml is written" in done.output
     # results that stand there already are another's: they stay, and so does what is said of them
     (tmp_path / "campaign.toml").unlink()
-    again = CliRunner().invoke(cli.app, ["run", "odd.txt", "--figures", "none"])
+    again = CliRunner().invoke(cli.app, ["run", "odd.txt"])
     assert again.exit_code == 3 and (tmp_path / "results" / "report.html").is_file()
-    other = CliRunner().invoke(cli.app, ["run", "raw/disc.csv", "--figures", "none"])
+    other = CliRunner().invoke(cli.app, ["run", "raw/disc.csv"])
     assert other.exit_code == 0 and "campaign_disc.toml is written" in other.output
 
 
@@ -195,7 +195,7 @@ def test_of_strokes_it_is_said_which_part_counts(tmp_path, monkeypatch):
     rows = "\n".join(f"{t:.3f},{f:.4f}" for t, f in zip(time, force, strict=True))
     head = "Stroke: 10 mm\nFrequency: 1 Hz\nDrive: crank\nLoad: 10 N\n"
     (tmp_path / "pin.csv").write_text(f"{head}Time [s],Friction force [N]\n{rows}\n")
-    done = CliRunner().invoke(cli.app, ["run", "pin.csv", "--figures", "none"])
+    done = CliRunner().invoke(cli.app, ["run", "pin.csv"])
     assert done.exit_code == 0, done.output
     assert "pin: left out: what lies outside the middle 50 % of the way of each of" in done.output
     assert not (tmp_path / "results" / "tables" / "roughness.csv").exists()

@@ -62,7 +62,7 @@ def wrong(campaign: Path, name: str, tables: dict[str, bytes]) -> str:
         found = [str(error)]
     if not found or not found[0].startswith(name):
         return f"verify says {found[:1]}"
-    run = ("run", str(campaign), "-q", "-j", "1", "--figures", "none")
+    run = ("run", str(campaign), "-q", "-j", "1")
     code, said = answer(*run)
     if "verify --repair" in said:  # the marker is lost beyond use
         answer("verify", str(results), "--repair")

@@ -24,6 +24,8 @@ from tribolab.app.streams import say
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
 
+_FIGURES = "'tribolab figures' draws all figures"
+
 
 def demo(
     folder: Annotated[
@@ -122,13 +124,8 @@ def run(
             help="Analyse everything here if the Dask cluster does not answer or is lost.",
         ),
     ] = False,
-    figures: Annotated[
-        str,
-        typer.Option(
-            help="Figures for publication: curves, none, or all, as `tribolab figures` draws."
-        ),
-    ] = "curves",
-    pdf: Annotated[bool, typer.Option("--pdf", help="Write figures as PDF, too.")] = False,
+    figures: Annotated[str, leaving("--figures", _FIGURES)] = "curves",
+    pdf: Annotated[bool, leaving("--pdf", _FIGURES)] = False,
     tables: Annotated[
         str, typer.Option(help="Tables next to CSV: xlsx (one workbook with units) or parquet.")
     ] = "csv",
