@@ -160,7 +160,7 @@ for _x, _z in (("0", "1e-6"), ("1e-6", "0"), ("0", "0"), ("-1e-6", "1e-6"), ("na
         def _(folder: Path, command: str, x: str, z: str) -> Command:
             (folder / "s.sdf").write_text(_sdf(x, z))
             if command == "read_scans":
-                return notebook("s = tl.read_scans('s.sdf')\nprint(tl.roughness(s))")
+                return notebook("s = tl.read_scans('s.sdf')\nprint(tl.roughness_parameters(s))")
             return [*TRIBOLAB, command, "s.sdf"]
 
 
