@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tribolab import cli, rig
+from tribolab.app.info import excerpt, file_info
 from tribolab.core.errors import ReadError
 from tribolab.qc.register import Check
 from tribolab.qc.run import checks as run_checks
@@ -245,3 +246,23 @@ def test_a_file_in_the_wrong_table_of_a_campaign_is_told_the_right_one(scans, tm
         read(scans / "sb-r_1.csv")
     assert error.value.told("campaign").endswith("; it belongs under scans of a [[surface]]")
     assert "a campaign under scans of a [[surface]]" in error.value.told("terminal")
+
+
+def test_info_on_a_long_file_takes_an_excerpt_in_which_each_range_is_nearly_the_whole_files(
+    tmp_path, monkeypatch
+):
+    rows = 60_000
+    time = np.arange(rows) / 100
+    speed = np.sign(np.sin(time / 3)) * (1 + time // 40)
+    force = 5 * np.sign(speed)
+    lines = [f"{t:.2f},{f:.3f},20.0,{v:.3f}\n" for t, f, v in zip(time, force, speed, strict=True)]
+    file = tmp_path / "own.csv"
+    head = "Slider\nTime [s],Friction force [N],Normal force [N],Speed [mm/s]\n"
+    file.write_text(head + "".join(lines))
+    whole = file_info.file_lines(file)
+    monkeypatch.setattr(excerpt, "_LONG", 1 << 19)
+    part = file_info.file_lines(file)
+    assert "0.3%" not in part[2] and "estimated" in part[2]
+    assert [line for line in part if line in whole] == [whole[0], *whole[2:]]
+    estimated = int(part[1].split()[0])
+    assert estimated == pytest.approx(rows, rel=0.01)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +13,9 @@ from typing import TYPE_CHECKING, Any
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.app.first_campaign import NAME
 from tribolab.app.info.file_info import read_scan
-from tribolab.app.raw_folder import files_in
 from tribolab.app.streams import say
 from tribolab.campaign.engine.stage import Progress, Stage, perform
-from tribolab.campaign.settings.files import instrument_of, own_python, scans_of
-from tribolab.campaign.settings.load import load_and_plan
 from tribolab.core.errors import ConfigError, TribolabError, told
 from tribolab.core.untyped import Json
 from tribolab.core.wording import explain
@@ -110,23 +106,36 @@ def raw_files_of(paths: Sequence[Path]) -> list[tuple[list[Path], str | None]]:
     """
     found: dict[str | None, list[Path]] = {}
     for path in paths:
-        if path.is_dir() and not (path / NAME).exists():
-            found.setdefault(None, []).extend(files_in(path))
-        elif path.is_dir() or path.suffix == ".toml":
-            campaign, runs = load_and_plan(path)
-            for run in runs:
-                found.setdefault(run.instrument, []).extend(run.files)
-            for surface in campaign.surface:
-                named = surface.instrument and instrument_of(campaign, surface.instrument)
-                found.setdefault(named, []).extend(scans_of(campaign, surface))
-            if own_python(campaign):
-                raise ConfigError(
-                    f"{path}: it names readers in Python, which are not run for a check",
-                    cure="check the raw files themselves: tribolab check FILES -i READER.py",
-                )
+        if path.is_dir() or path.suffix == ".toml":
+            for files, instrument in _files_below(path):
+                found.setdefault(instrument, []).extend(files)
         else:
             found.setdefault(None, []).append(path)
     return [(files, instrument) for instrument, files in found.items()]
+
+
+def _files_below(path: Path) -> Iterator[tuple[Sequence[Path], str | None]]:
+    """Yield the raw files of a folder or campaign, with their instrument."""
+    # imported late: single files need no campaign
+    from tribolab.app.first_campaign import NAME
+    from tribolab.app.raw_folder import files_in
+    from tribolab.campaign.settings.files import instrument_of, own_python, scans_of
+    from tribolab.campaign.settings.load import load_and_plan
+
+    if path.is_dir() and not (path / NAME).exists():
+        yield files_in(path), None
+        return
+    campaign, runs = load_and_plan(path)
+    for run in runs:
+        yield run.files, run.instrument
+    for surface in campaign.surface:
+        named = surface.instrument and instrument_of(campaign, surface.instrument)
+        yield scans_of(campaign, surface), named
+    if own_python(campaign):
+        raise ConfigError(
+            f"{path}: it names readers in Python, which are not run for a check",
+            cure="check the raw files themselves: tribolab check FILES -i READER.py",
+        )
 
 
 class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
@@ -222,16 +231,18 @@ def check_files(
     ConfigError
         If the instrument does not exist.
     """
-    # imported late for a quick start
-    from tribolab.reading.scan_files import file_of
-
     stage = Checks(paths, instrument, repeats)
     done = perform(stage, executor, progress)
     place = {file: number for number, group in enumerate(stage.groups) for file in group}
 
     def first(one: Checked) -> int:
         file = one.files[0]
-        return place[file] if file in place else place[file_of(file)]
+        if file in place:
+            return place[file]
+        # imported late for a quick start
+        from tribolab.reading.scan_files import file_of
+
+        return place[file_of(file)]
 
     return sorted((c for part in done for c in part), key=first)
 
@@ -306,7 +317,7 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
     For several files the last lines count them by status, and name those with objections.
     """
     # imported late for a quick start
-    from tribolab.app import terminal
+    from tribolab.app.console import console
 
     for checked_file in checked:
         if checked_file.error:
@@ -316,7 +327,7 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
         say(f"{checked_file.name}: {checked_file.summary}")
         table = checked_table(checked_file.rows, notes=notes, everything=everything)
         if table.row_count:
-            terminal.console().print(table)
+            console().print(table)
     if len(checked) > 1:
         for line in count_lines(checked):
             say(line)

@@ -7,15 +7,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console, ConsoleOptions, ConsoleRenderable, RenderHook, RenderResult
-from rich.segment import Segment
 from rich.table import Table
 
 from tribolab.app.ranges import range_of
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
-from tribolab.core.errors import harmless
 from tribolab.core.provenance import as_text
 from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
@@ -30,37 +27,10 @@ if TYPE_CHECKING:
 
     from tribolab.app.truth.known import DemoComparison
 
-_PIPED_WIDTH = 120
 _SHOWN, _HANDFUL = 10, 5
 _MOST_POINTS = 16  # most rows in a terminal
 _NONE = "–"
 _COUNTS = ("load", "runs", "segments")
-
-
-def console() -> Console:
-    """Return a console on stdout with escaped control characters; a pipe has a fixed width."""
-    out = Console(highlight=False)
-    if not out.is_terminal:
-        out = Console(highlight=False, width=_PIPED_WIDTH)
-    out.push_render_hook(_Harmless())
-    return out
-
-
-class _Harmless(RenderHook):
-    """Render hook that escapes control characters in all printed text except console styles."""
-
-    def process_renderables(self, renderables: list[ConsoleRenderable]) -> list[ConsoleRenderable]:
-        return [_Cleaned(part) for part in renderables]
-
-
-class _Cleaned:
-    def __init__(self, inner: ConsoleRenderable) -> None:
-        self.inner = inner
-
-    def __rich_console__(self, out: Console, options: ConsoleOptions) -> RenderResult:
-        for segment in out.render(self.inner, options):
-            text = segment.text if segment.control else harmless(segment.text)
-            yield Segment(text, segment.style, segment.control)
 
 
 def verdict_line(outcome: Outcome) -> str:

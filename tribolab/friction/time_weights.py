@@ -10,7 +10,6 @@ a gap: it has at least three such intervals in a row.
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
 
 from tribolab.friction.limits import MAX_UNEVEN, MIN_GAP
 
@@ -59,6 +58,9 @@ def without_gaps(steps: np.ndarray) -> np.ndarray:
     >>> without_gaps(np.array([1.0, 1.0, 1.0, 50.0, 1.0, 1.0])).tolist()
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
     """
+    # imported late: it loads slowly, and most records need none of it
+    from scipy import ndimage
+
     usual = ndimage.median_filter(steps, min(_INTERVALS_AROUND, steps.size), mode="nearest")
     return np.where(steps > MIN_GAP.value * usual, usual, steps)
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack
 from tribolab.core.aliases import PathLike
 from tribolab.core.errors import LacksError, ReadError, shown
 from tribolab.reading import cures
-from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError
+from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError, recognise
 from tribolab.reading.interpret.unit_texts import converts, measures_something
 from tribolab.reading.raw.opening import CrashedError, RefusedError
 from tribolab.reading.raw.source import read_unchanged
@@ -79,14 +79,20 @@ def read_run(
     return read_unchanged(paths, lambda: _by_any(paths, instrument, read))
 
 
-def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
-    """Read one raw file by itself, as arrays; see `read_run` and `read_run.read_log`."""
+def read_log(
+    path: PathLike, instrument: Instrument | None = None, excerpt: Path | None = None
+) -> Signals:
+    """Read one raw file by itself, as arrays; see `read_run` and `read_run.read_log`.
+
+    With an excerpt of the file, its dialect is the file's, and its numbers are the excerpt's.
+    """
+    file = Path(path)
+    source = excerpt or file
 
     def read(dialect: Instrument | None, _: bool) -> Signals:
-        return runs.read_log(path, dialect)
+        return runs.read_log(source, dialect or (recognise(file) if excerpt else None))
 
-    file = Path(path)
-    return read_unchanged([file], lambda: _by_any([file], instrument, read))
+    return read_unchanged([source], lambda: _by_any([file], instrument, read))
 
 
 def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run]) -> _Run:

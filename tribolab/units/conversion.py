@@ -137,7 +137,8 @@ def _prefix(unit: str, si_unit: str) -> float | None:
 
 
 # common units of instruments, and those that only measure the requested quantity
-_EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s)")
+_EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s|Hz)")
+_OF_TIME = frozenset(("Hz", "1/s", "rad/s"))  # a frequency may become one of these
 _ASKED = frozenset(
     ("", "1", "s", "m", "m2", "m3", "m4", "m/s", "m2/s", "1/m", "1/s", "Hz", "rad", "rad/s", "N")
     + ("N/m", "N/s", "N m", "N2 m", "J/m2", "Pa", "1/Pa", "Pa s", "V", "ohm", "K", "m/s**2")
@@ -151,7 +152,7 @@ def _measures_another(unit: str, si_unit: str) -> bool:
     everyday = _EVERYDAY.fullmatch(unit)
     if everyday is None or si_unit not in _ASKED:
         return False
-    return everyday[1] != si_unit
+    return everyday[1] != si_unit and not (everyday[1] == "Hz" and si_unit in _OF_TIME)
 
 
 @functools.lru_cache(maxsize=512)

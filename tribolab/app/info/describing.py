@@ -9,11 +9,11 @@ from pathlib import Path
 
 import typer
 
+from tribolab.app.console import console
 from tribolab.app.questions.asking import ask_about
 from tribolab.app.questions.dialect import try_on
 from tribolab.app.reported import UNREADABLE, fail
 from tribolab.app.streams import say
-from tribolab.app.terminal import console
 from tribolab.reading.unknown.proposal.draft import (
     Draft,
     as_profile,

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribolab.app.info.excerpt import Excerpt, write_excerpt
 from tribolab.app.info.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.app.quick import importing, plain_arrays_only
 from tribolab.app.ranges import range_of
@@ -21,7 +23,7 @@ from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.source import check_regular
-from tribolab.reading.runs.companion import CompanionFacts, describe_companion
+from tribolab.reading.runs.companion import CompanionFacts, describe_companion, has_companion
 from tribolab.reading.runs.file_facts import FileFacts, file_facts
 from tribolab.reading.runs.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.reading.runs.read_run import read_log as known_log
@@ -52,6 +54,10 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     ConfigError
         If the instrument does not exist.
     """
+    with tempfile.TemporaryDirectory() as folder:
+        part = write_excerpt(path, Path(folder))
+        if part is not None and (lines := _excerpt_lines(part, path, instrument)):
+            return lines
     kind = kind_of(path, instrument)
     if kind == "unknown" and holds_modulus(path):
         return _modulus_lines(path)
@@ -64,6 +70,32 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     with importing():
         plain_arrays_only()
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
+
+
+def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> list[str]:
+    """Return how a long run is interpreted, from an excerpt; empty if that does not suffice."""
+    try:
+        kind = kind_of(path, instrument)
+        drafted = kind == "unknown" and holds_run(path)
+        if not drafted and (kind != "run" or has_companion(path, instrument)):
+            return []
+        log = read_log(path, instrument, part.file)
+    except ReadError:  # the whole file gives the error, or is not cut without one
+        return []
+    facts = file_facts(log, path, instrument)
+    whole = facts["left_out"] or facts["are_points"] or facts["steps"]
+    if whole or log.attrs.get("time_source") != "recorded":
+        return []
+    header = part.lines - facts["rows"]
+    facts["rows"], facts["longest_interval_s"] = part.lines_of_whole - header, None
+    lines = run_lines(facts)
+    share = part.file.stat().st_size / path.stat().st_size
+    lines.insert(
+        2,
+        f"  the number of rows is estimated, and ranges are of samples: {share:.1%} of the file "
+        "was read (`tribolab check` reads all)",
+    )
+    return lines + missing_lines(facts, log.columns) + _doubts(log.columns)
 
 
 def _modulus_lines(path: Path) -> list[str]:
@@ -273,9 +305,9 @@ def run_lines(facts: FileFacts) -> list[str]:
             f"  {Count(facts['rows']):result|results}, each at one speed: its error is unknown"
         )
     elif facts["interval_s"] is not None:
-        sampling += (
-            f", one every {facts['interval_s']:.3g} s, at most {facts['longest_interval_s']:.3g} s"
-        )
+        sampling += f", one every {facts['interval_s']:.3g} s"
+        if facts["longest_interval_s"] is not None:
+            sampling += f", at most {facts['longest_interval_s']:.3g} s"
     lines.append(sampling + (f", {Count(facts['steps']):step|steps}" if facts["steps"] else ""))
     if facts["left_out"]:
         lines.append(f"  left out: {facts['left_out']}")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 import numpy as np
-from scipy.cluster.hierarchy import fcluster, linkage
 
 from tribolab.friction.points import limits
 
@@ -113,6 +112,9 @@ def _link_speeds(x: np.ndarray, most: float) -> np.ndarray:
     middle = np.bincount(which, x) / np.bincount(which)
     if cells.size < 2:
         return np.zeros(x.size, int)
+    # imported late: scipy.cluster loads slowly, and clear groups need none of it
+    from scipy.cluster.hierarchy import fcluster, linkage
+
     reach = max(most - limits.SPEED_FLOOR.value, 0.0)  # a cell is as wide as the floor
     found = fcluster(linkage(middle[:, None], "complete"), reach, "distance")[which]
     return np.concatenate([[0], np.cumsum(np.diff(found) != 0)])

@@ -16,6 +16,7 @@ _ANY = "any"
 _DELIMITERS = ("\t", ";", "|", ",")  # of several that split a header equally, the first
 _ROWS = 20  # lines inspected below the names
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
+_OF_NUMBERS = "0123456789.,;|+-eE \t"  # characters of a row of numbers, which names no column
 _COMMA, _POINT = re.compile(r"\d,\d"), re.compile(r"\d\.\d")
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?")
 
@@ -85,7 +86,8 @@ def _from_header(file: File, text: str, dialect: Dialect) -> list[str]:
     header = dialect.header
     if header.pattern is not None:
         pattern = guarded(header.pattern)
-        start = next((n for n, line in enumerate(lines) if pattern.search(line)), len(lines))
+        named = (n for n, line in enumerate(lines) if line.strip(_OF_NUMBERS))
+        start = next((n for n in named if pattern.search(lines[n])), len(lines))
     else:
         start = (header.line or 1) - 1
     if start >= len(lines):

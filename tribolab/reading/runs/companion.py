@@ -75,6 +75,11 @@ def describe_companion(
     return told
 
 
+def has_companion(path: Path, instrument: str | Path | None = None) -> bool:
+    """Whether the instrument that wrote a main log writes a second log, too."""
+    return _pairing(path, instrument) is not None
+
+
 def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:
     """Return the dialect of a main log with a second log."""
     if instrument is None and peek(path).format == "netcdf":
