@@ -51,7 +51,7 @@ def scan(folder: Path, points: int) -> Path:
     heights = np.cumsum(rng.standard_normal(points)) * 0.01
     x = np.arange(points) * 0.5
     file = folder / f"{points}.csv"
-    np.savetxt(file, np.c_[x, heights], "%.6g", ",", header="x [um],z [um]", comments="")
+    np.savetxt(file, np.c_[x, heights], ("%.1f", "%.5f"), ",", header="x [um],z [um]", comments="")
     return file
 
 
