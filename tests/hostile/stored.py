@@ -129,7 +129,7 @@ for _name, _forge in FORGED.items():
             return run(file) if command == "run" else [*TRIBOLAB, command, "c/results"]
 
 
-@case("stored 2: a forged table with a marker that fits", codes=(1,), says="friction.csv", **LONG)
+@case("stored 2: a forged table with a marker that fits", codes=(3,), says="friction.csv", **LONG)
 def _(folder: Path) -> Command:
     from tribolab.campaign.store.ledger import Ledger
 
