@@ -94,7 +94,7 @@ def browser(one_browser):
 def results(whole, tmp_path_factory):
     """The page of a file's own `whole` as it is sent: in a folder with nothing beside it.
 
-    That it asks for nothing where it lies among its results, tests/test_report_page.py shows.
+    tests/report/test_report_page.py shows that it asks for nothing where it lies among its results.
     """
     from report_pages import sent
 

@@ -1,9 +1,9 @@
 """Plans that are followed: the standard error that is reached, and whether the assurance holds.
 
-Run with ``PYTHONPATH=$PWD:$PWD/tests python tests/benchmarks/plan_followed.py``. Pilots of 40, 5
-and 3 runs tell what runs scatter by; as many runs as planned are simulated, and the error that they
-tell is wanted within 10 % of the one asked for (median), and of the assured runs below it as often
-as assured, less 5 %. Exits with 1 where that is missed.
+Run with ``PYTHONPATH=$PWD:$PWD/tests/comparison python tests/benchmarks/plan_followed.py``. Pilots
+of 40, 5 and 3 runs give the scatter; as many runs as planned are simulated. Their standard error
+must be within 10 % of the one asked for (median), and below it as often as assured, less 5 %.
+Exits with 1 otherwise.
 """
 
 import argparse

@@ -13,7 +13,7 @@ of ``../shared/data`` are read where they lie.
 To make it anew, record what tests read (`corpus.record`), then collect::
 
     TRIBOLAB_RECORD=/tmp/recorded PYTHONPATH=.:tests python -m pytest -p corpus.record \
-        tests/test_draft*.py tests/test_scan*.py tests/test_io*.py ...
+        tests/questions tests/scans tests/instruments ...
     TRIBOLAB_RECORD=/tmp/recorded PYTHONPATH=.:tests python -m corpus.record \
         tests/benchmarks/scan_kinds.py
     PYTHONPATH=.:tests python -m corpus collect /tmp/recorded

@@ -1,6 +1,7 @@
 """A pytest plugin that writes down every file that tests hand to reading, as it then is.
 
-    TRIBOLAB_RECORD=FOLDER PYTHONPATH=.:tests python -m pytest -p corpus.record tests/test_draft.py
+    TRIBOLAB_RECORD=FOLDER PYTHONPATH=.:tests \
+        python -m pytest -p corpus.record tests/questions/test_draft.py
     TRIBOLAB_RECORD=FOLDER PYTHONPATH=.:tests python -m corpus.record tests/benchmarks/scan_kinds.py
 
 The functions below are watched wherever they were imported to: their code is replaced, not their

@@ -102,7 +102,7 @@ def _case(
     if instrument is not None and instrument.startswith(_DRAFTED):
         left["read by a drafted description"] += 1
         return None
-    if plain["test"].startswith("tests/test_file_kinds.py"):
+    if plain["test"].startswith("tests/instruments/test_file_kinds.py"):
         return None  # of the rig
     if any(not name.isprintable() or len(name.encode()) > 90 for name, _ in (*files, *beside)):
         left["a name that no archive holds"] += 1

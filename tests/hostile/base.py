@@ -2,7 +2,7 @@
 
 A case prepares a folder and returns the command; what the answer has to be stands beside it.
 ``tests/benchmarks/break_it.py`` runs all of them with limits on time and memory,
-``tests/test_hostile.py`` the quick ones.
+``tests/reading/test_hostile.py`` the quick ones.
 """
 
 from __future__ import annotations

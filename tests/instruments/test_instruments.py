@@ -346,7 +346,7 @@ def test_a_stroke_that_is_ramped_in_a_run_is_refused(tmp_path):
 
 
 def test_each_instrument_stands_in_the_docs_with_where_its_layout_is_from():
-    table = (Path(__file__).parents[1] / "docs" / "instruments.md").read_text(encoding="utf-8")
+    table = (Path(__file__).parents[2] / "docs" / "instruments.md").read_text(encoding="utf-8")
     rows = [line for line in table.splitlines() if line.startswith("| `")]
     assert {row.split("`")[1] for row in rows} == set(known_dialects())
     assert all(len(row.split(" | ")) == 4 for row in rows)

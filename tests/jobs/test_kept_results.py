@@ -12,7 +12,7 @@ import tribolab as tl
 from tribolab.app.run import run_campaign
 from tribolab.app.verifying import problems
 
-ARCHIVES = sorted(Path(__file__).parent.glob("kept_results/*.tar.xz"))
+ARCHIVES = sorted(Path(__file__).parents[1].glob("kept_results/*.tar.xz"))
 
 
 @pytest.fixture(scope="module", params=ARCHIVES, ids=lambda path: path.name)

@@ -12,7 +12,7 @@ import nbconvert
 import nbformat
 import pytest
 
-PROJECT = Path(__file__).resolve().parents[1]
+PROJECT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((PROJECT / "notebooks").glob("*.ipynb"))
 # what concerns who wrote the notebook; that a package lacks MPI, for one, does not
 STRICT = (

@@ -1,6 +1,6 @@
 """Friction of line contacts at rest and in motion, as stored before other contacts were added.
 
-``python tests/line_contact_numbers.py`` writes them anew.
+``python tests/lubrication/line_contact_numbers.py`` writes them anew.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 import tribolab as tl
 from tribolab.studies import xu2026
 
-STORED = Path(__file__).parent / "kept_results" / "line_contacts.json"
+STORED = Path(__file__).parents[1] / "kept_results" / "line_contacts.json"
 SPEEDS = [0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1]
 KEPT = (
     "friction_coefficient", "friction_coefficient_couette", "friction_coefficient_pressure",
