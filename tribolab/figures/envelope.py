@@ -60,8 +60,25 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
     x, y = np.asarray(x, float), np.asarray(y, float)
     if x.size <= 2 * columns:
         return np.arange(x.size)
-    starts = _starts(x, columns)
-    edges = np.append(starts, x.size)
+    return extremes_index(y, _starts(x, columns))
+
+
+def extremes_index(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """Return the indices of the first minimum and the first maximum of each column, in order.
+
+    Parameters
+    ----------
+    y
+        Samples.
+    starts
+        Index of the first sample of each column, increasing; the last one ends with the record.
+
+    Examples
+    --------
+    >>> extremes_index(np.array([0, 5, 1, 0, 0, -2, 0, 0.5]), np.array([0, 4]))
+    array([0, 1, 5, 7])
+    """
+    edges = np.append(starts, y.size)
     kept = []
     for first, last in whole_blocks(edges):
         begin = edges[first]

@@ -34,8 +34,10 @@ def sample_weights(time: np.ndarray) -> np.ndarray | None:
     """
     if time.size < 3:
         return None
-    marks = np.linspace(0, time.size - 1, min(time.size, _COMPARED_ROWS)).astype(int)
-    if not _is_uneven(time[marks]):
+    marked = time
+    if time.size > _COMPARED_ROWS:
+        marked = time[np.linspace(0, time.size - 1, _COMPARED_ROWS).astype(int)]
+    if not _is_uneven(marked):
         return None
     steps = without_gaps(np.diff(time))
     cumulative = np.concatenate([[0.0], np.cumsum(steps)])

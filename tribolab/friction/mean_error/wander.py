@@ -32,7 +32,9 @@ _MEMORY_GRID = np.geomspace(0.05, 6.0, 8)  # correlation times, as shares of the
 # variance of the white noise over that of the drift at low frequencies
 _WHITE_SHARES = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 _MIN_COSINES = 4
-_BISECTIONS = 40  # steps of bisection for U95: to the last digit that matters
+_MAX_STEPS = 60  # of Newton's method for U95; about six are needed
+_CLOSE = 1e-11  # relative step at which U95 is found
+_WIDEST_BRACKET = np.log(1e12)
 _OUTSIDE_COVERAGE = 0.05
 
 
@@ -134,17 +136,36 @@ def _kept_cosines(
 
 
 def _half_interval(weight: np.ndarray, errors: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Return the half interval that contains 95 % of each mixture (record)."""
+    """Return the half interval that contains 95 % of each mixture (record).
+
+    Newton's method for the logarithm of the probability beyond it, as a function of the logarithm
+    of the half interval; a step that leaves the bracket is replaced by a bisection.
+    """
     quantile = special.stdtrit(free, 1 - _OUTSIDE_COVERAGE / 2)
-    low, high = (quantile * end for end in (errors.min(axis=1), errors.max(axis=1)))
-    known = high > 0
-    low, high = np.maximum(low, 1e-12 * high), np.where(known, high, 1.0)
+    known = errors.max(axis=1) > 0
     scale = np.where(errors > 0, errors, 1e-300)
-    for _ in range(_BISECTIONS):
-        middle = np.sqrt(np.maximum(low, 1e-300) * high)
-        beyond = (weight * special.stdtr(free[:, None], -middle[:, None] / scale)).sum(axis=1)
-        out = beyond > _OUTSIDE_COVERAGE / 2
-        low, high = np.where(out, middle, low), np.where(out, high, middle)
-        if np.all(high <= low * (1 + 1e-9)):
+    low = np.log(quantile) + np.log(scale.min(axis=1))
+    high = np.log(quantile) + np.log(scale.max(axis=1))
+    low = np.maximum(low, high - _WIDEST_BRACKET)
+    found = np.log(quantile) + np.log((weight * errors).sum(axis=1).clip(1e-300))
+    found = np.clip(found, low, high)
+    density = np.exp(special.gammaln((free + 1) / 2) - special.gammaln(free / 2))
+    density /= np.sqrt(np.pi * free)
+    left = np.flatnonzero(known)
+    for _ in range(_MAX_STEPS):
+        if not left.size:
             break
-    return np.where(known, high, 0.0)
+        dof, x = free[left, None], found[left]
+        ratio = np.exp(x)[:, None] / scale[left]
+        beyond = (weight[left] * special.stdtr(dof, -ratio)).sum(axis=1)
+        fall = ratio * (1 + ratio**2 / dof) ** (-(dof + 1) / 2)
+        slope = (weight[left] * fall).sum(axis=1) * density[left]
+        out = beyond > _OUTSIDE_COVERAGE / 2
+        low[left] = np.where(out, x, low[left])
+        high[left] = np.where(out, high[left], x)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.log(beyond / (_OUTSIDE_COVERAGE / 2)) * beyond / slope
+        inside = (x + step >= low[left]) & (x + step <= high[left])
+        found[left] = np.where(inside, x + step, (low[left] + high[left]) / 2)
+        left = left[np.abs(found[left] - x) > _CLOSE]
+    return np.where(known, np.exp(found), 0.0)

@@ -256,11 +256,17 @@ def _is_accurate(speed: np.ndarray, error: float) -> bool:
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
     """Return offset and slope of the straight line through an interval, without single outliers."""
     t0 = time.mean()
+    since = time - t0
     keep = np.ones(time.size, dtype=bool)
     offset = slope = 0.0
     for _ in range(3):
-        slope, offset = np.polyfit(time[keep] - t0, position[keep], 1)
-        rest = np.abs(position - offset - slope * (time - t0))
+        t, x = since[keep], position[keep]
+        middle, level = t.mean(), x.mean()
+        t = t - middle
+        spread = t @ t
+        slope = t @ (x - level) / spread if spread else 0.0
+        offset = level - slope * middle
+        rest = np.abs(position - offset - slope * since)
         limit = 4 * median(rest[keep]) / 0.6745
         if limit == 0:
             break

@@ -13,7 +13,7 @@ from tribolab.arrays.chunks import one_by_one, samples_where
 from tribolab.arrays.scratch import let_go
 from tribolab.core.untyped import Json
 from tribolab.core.wording import speed_text
-from tribolab.figures.envelope import envelope_index
+from tribolab.figures.envelope import envelope_index, extremes_index
 from tribolab.figures.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.records.packed import Clock, clock_of, pack_points
@@ -220,10 +220,11 @@ def _chosen(time: np.ndarray, values: np.ndarray, bounds: np.ndarray, points: in
     parts = [envelope_index(time, values, points // 4)]
     first = np.searchsorted(time, bounds[:, 0], "left")
     last = np.searchsorted(time, bounds[:, 1], "right")
-    columns = max(2, points // 4 // max(len(bounds), 1))
-    for a, b in zip(first, last, strict=True):
-        if b - a > 1:
-            parts.append(a + envelope_index(time[a:b], values[a:b], columns))
+    if len(bounds):
+        columns = max(2, points // 4 // len(bounds))
+        within = np.linspace(first, last, columns + 1).astype(int)
+        starts = np.unique(within)
+        parts.append(extremes_index(values, starts[starts < time.size]))
     chosen = np.sort(np.concatenate([*parts, [0, time.size - 1]]))
     # unique values without hashing by `numpy.unique`
     return chosen[np.diff(chosen, prepend=-1) > 0]
