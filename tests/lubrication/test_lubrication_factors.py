@@ -12,9 +12,11 @@ from scipy.special import erfinv
 
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.persson import mean_separation
+from tribolab.contact.separation import separation_table
 from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.lubrication.factors import FACTORS, FlowFactors, flow_factors, smooth_factors
 from tribolab.lubrication.patir_cheng import patir_cheng
+from tribolab.lubrication.theory_error import factors_of_numerics, pressure_of_numerics
 from tribolab.surface.moments import rms_roughness, rms_slope
 
 
@@ -74,6 +76,37 @@ def test_what_shear_entrains_is_what_pressure_drags(name):
         assert 1 + h * at.phi_s[0] / mean == pytest.approx(at.phi_fp[0], abs=1e-12)
         assert at.phi_fp[0] == pytest.approx(entrained / mean, rel=1e-3)  # between the nodes
         assert at.phi_p[0] == pytest.approx(effective / mean**3, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_the_other_end_of_the_theory_is_numerics_near_and_gaussian_gaps_far(name):
+    ours, d = factors_of(name), 1 / 0.58
+    other, h = factors_of_numerics(ours), ours.rms_roughness
+    near = h * np.geomspace(0.3, 2.2, 30)
+    np.testing.assert_allclose(other.at(near).phi_f, ours.at(near).phi_f / 1.24, rtol=2e-3)
+    np.testing.assert_allclose(other.at(near).phi_p, ours.at(near).phi_p, rtol=2e-3)
+    ratio = np.geomspace(9, 40, 30)
+    far = other.at(ratio * h)
+    np.testing.assert_allclose(far.phi_fs * ratio**2, 3 / d, rtol=2e-3)
+    np.testing.assert_allclose((1 - far.phi_p) * ratio**2, 9 / d - 3, rtol=2e-3)
+    at_7 = [float(one.at(np.array(7 * h)).phi_fs) * 49 * d / 3 for one in (ours, other)]
+    assert at_7[0] > 1.25 and at_7[1] == pytest.approx(1, abs=0.015)
+    assert np.all(other.at(h * np.geomspace(0.3, 100, 300)).phi_f > 1)
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_the_contact_pressure_of_numerics_is_higher_when_close_only(name):
+    table = separation_table(reference_psd(name), 2e6)
+    other, h = pressure_of_numerics(table), table.rms_roughness
+    u = h * np.geomspace(1e-8, 10, 3000)
+    pressure, slope = other.pressure_and_slope(u)
+    ratio = pressure / table.pressure(u)
+    assert np.all(np.diff(pressure) < 0) and np.all(slope < 0)
+    assert ratio[u >= 0.3 * h] == pytest.approx(1, rel=1e-6)
+    assert ratio[(u <= 0.13 * h) & (u > table.table_separation[-1])] == pytest.approx(
+        1.17, rel=1e-3
+    )
+    np.testing.assert_allclose(other.separation(pressure), u, rtol=1e-8)
 
 
 @pytest.mark.parametrize("name", SURFACES)

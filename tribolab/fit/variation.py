@@ -8,6 +8,7 @@ import xarray as xr
 
 from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import Contact
+from tribolab.contact.separation import Separation
 from tribolab.lubrication.factors import FlowFactors, RoughBody
 from tribolab.lubrication.parameters import Outlet
 
@@ -45,6 +46,7 @@ class Changed(TypedDict, total=False):
 
     psd: xr.Dataset
     factors: FlowFactors
+    separation: Separation
     gamma: float
     rough_body: RoughBody
     friction_factors: bool

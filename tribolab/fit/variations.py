@@ -20,6 +20,7 @@ from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.varied_spectrum import hurst_exponent, long_waves, short_waves, spectrum_band
 from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
+from tribolab.lubrication.theory_error import factors_of_numerics, pressure_of_numerics
 
 _LOW_PERCOLATION, _HIGH_PERCOLATION = 0.40, 0.50
 _LIQUID_RADII = 3.0  # inlet length in radii of a ball: some 30 mm
@@ -35,12 +36,6 @@ _FIXED_IF_ROUGH = (
     ("shear stress in the contact", "the same at every speed, load and temperature"),
     ("contact area", "without adhesion, at rest"),
     ("roughness", "Gaussian, isotropic and on one of the bodies"),
-    (
-        "form of the flow factors",
-        "effective-medium theory of the gaps' distribution: phi_f is 19 to 24 % above numerics at "
-        "2 to 3.2 h_rms, phi_p 4 % and phi_fs up to 31 % off their Gaussian limit beyond 7 h_rms, "
-        "and p(u) 8 to 17 % low below 0.14 h_rms",
-    ),
 )
 
 _WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures are without it"
@@ -117,6 +112,29 @@ def friction_factors(base: Base) -> Variation:
     )
 
 
+def flow_and_shear_factors(base: Base) -> Variation:
+    """Use factors with phi_f as in direct numerics, and of Gaussian gaps at large separation."""
+    factors = flow_factors(base.spectrum, base.rough_body, gamma=base.gamma)
+    return Variation(
+        "flow and shear factors",
+        "effective-medium theory: φ_f is 19 to 24 % above direct numerics at 2 to 3.2 h_rms; "
+        "beyond 7 h_rms φ_p is 4 % and φ_fs up to 31 % off the limit of Gaussian gaps",
+        ("", "as in numerics"),
+        (None, {"factors": factors_of_numerics(factors)}),
+    )
+
+
+def contact_pressure(base: Base) -> Variation:
+    """Raise the contact pressure at small separation to that of numerics."""
+    table = separation_table(base.spectrum, base.contact.effective_modulus, base.gamma)
+    return Variation(
+        "contact pressure p(u)",
+        "8 to 17 % below boundary elements at separations below 0.14 h_rms",
+        ("", "17 % higher below 0.14 h_rms"),
+        (None, {"separation": pressure_of_numerics(table)}),
+    )
+
+
 def inlet_length(base: Base) -> Variation | Skipped:
     """Start the liquid at the edge of the cylinder, where its gap is no longer parabolic."""
     name = "inlet length"
@@ -167,6 +185,8 @@ _OF_ROUGHNESS: tuple[Callable[[Base], Variation | Skipped], ...] = (
     area_theory,
     rough_body,
     friction_factors,
+    flow_and_shear_factors,
+    contact_pressure,
 )
 
 _OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (

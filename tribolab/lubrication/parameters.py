@@ -12,6 +12,7 @@ import numpy as np
 
 from tribolab.arrays.broadcasting import stated_value
 from tribolab.contact.area import AreaTheory, check_area
+from tribolab.contact.separation import Separation
 from tribolab.core.errors import AnalysisError, nearest, shown
 from tribolab.lubrication.factors import FlowFactors, RoughBody
 from tribolab.lubrication.thinning import ShearThinning
@@ -95,8 +96,8 @@ class Interface:
     roughness_balance
         (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster one: -1 if only the
         slower body is rough, 1 if only the faster one is. None: from `rough_body`.
-    factors
-        Factors used instead of the effective-medium ones.
+    factors, separation
+        Factors used instead of the effective-medium ones, and p(u) instead of Persson's.
     work_of_adhesion
         Work of adhesion of the bodies in the liquid [J/m2]: adhesion then increases the contact
         area.
@@ -117,6 +118,7 @@ class Interface:
     rough_body: RoughBody | None = None
     roughness_balance: float | None = None
     factors: FlowFactors | None = None
+    separation: Separation | None = None
     work_of_adhesion: float | None = None
     slide_roll: float | None = None
     abscissa: Abscissa = "entrainment_speed"

@@ -42,7 +42,9 @@ def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) 
     balance = interface.roughness_balance
     if slide != 1 or balance is not None:
         factors = replace(factors, slide=slide, roughness_balance=balance)
-    table = None if psd is None else separation_table(psd, contact.effective_modulus, solver.gamma)
+    table = interface.separation
+    if psd is not None and table is None:
+        table = separation_table(psd, contact.effective_modulus, solver.gamma)
     return System(
         contact, psd, table, factors, liquid, solver, rolls=interface.slide_roll is not None
     )
