@@ -14,9 +14,9 @@ from tribolab.contact.gap import gap_distribution
 from tribolab.contact.persson import mean_separation
 from tribolab.contact.separation import separation_table
 from tribolab.core.errors import AnalysisError, UnitError
+from tribolab.fit.theory_error import factors_of_numerics, pressure_of_numerics
 from tribolab.lubrication.factors import FACTORS, FlowFactors, flow_factors, smooth_factors
 from tribolab.lubrication.patir_cheng import patir_cheng
-from tribolab.lubrication.theory_error import factors_of_numerics, pressure_of_numerics
 from tribolab.surface.moments import rms_roughness, rms_slope
 
 
@@ -90,7 +90,7 @@ def test_the_other_end_of_the_theory_is_numerics_near_and_gaussian_gaps_far(name
     np.testing.assert_allclose(far.phi_fs * ratio**2, 3 / d, rtol=2e-3)
     np.testing.assert_allclose((1 - far.phi_p) * ratio**2, 9 / d - 3, rtol=2e-3)
     at_7 = [float(one.at(np.array(7 * h)).phi_fs) * 49 * d / 3 for one in (ours, other)]
-    assert at_7[0] > 1.25 and at_7[1] == pytest.approx(1, abs=0.015)
+    assert at_7[0] > 1.1 and at_7[1] == pytest.approx(1, abs=0.015)
     assert np.all(other.at(h * np.geomspace(0.3, 100, 300)).phi_f > 1)
 
 

@@ -16,11 +16,11 @@ from tribolab.fit.stated_ranges import (
     WORK_OF_ADHESION,
     YOUNGS_MODULUS,
 )
+from tribolab.fit.theory_error import factors_of_numerics, pressure_of_numerics
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.varied_spectrum import hurst_exponent, long_waves, short_waves, spectrum_band
 from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
-from tribolab.lubrication.theory_error import factors_of_numerics, pressure_of_numerics
 
 _LOW_PERCOLATION, _HIGH_PERCOLATION = 0.40, 0.50
 _LIQUID_RADII = 3.0  # inlet length in radii of a ball: some 30 mm
