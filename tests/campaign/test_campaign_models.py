@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import tribolab
-from tribolab.app.terminal import truth_lines
+from tribolab.app.terminal import outcome_lines, truth_lines
 from tribolab.app.truth.friction import TruthComparison
 from tribolab.app.truth.known import DemoComparison
 from tribolab.app.truth.shear_stress import compare_shear_stress
@@ -117,7 +117,7 @@ def test_the_shear_stress_stands_for_both_theories_of_the_area(outcome):
 
 def test_the_data_file_has_curve_fit_profiles_factors_and_band(outcome):
     (model,) = outcome.models
-    assert model.parts == ("curve", "fit", "profiles", "factors", "uncertainty")
+    assert model.parts == ("curve", "fit", "profiles", "factors", "uncertainty", "left_out")
     file = outcome.folder / model.data_file
     curve, fit, profiles = (read_netcdf(file, part) for part in ("curve", "fit", "profiles"))
     assert curve.sizes["sliding_speed"] == 33
@@ -222,6 +222,17 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     assert "no viscosity_range was given" in rows[0].not_varied
     assert "range was given" not in rows[1].not_varied
     assert "liquid: Newtonian" in rows[1].not_varied
+
+
+def test_terminal_page_and_report_list_what_is_not_in_the_model(outcome):
+    report = json.loads((outcome.folder / "report.json").read_text())
+    effects = {row["effect"]: row for row in report["models"][0]["not_in_model"]}
+    assert {"edge load", "misalignment", "crown", "squeeze-out time", "lay"} <= set(effects)
+    page = (outcome.folder / "report.html").read_text("utf-8")
+    (line,) = [line for line in outcome_lines(outcome) if line.startswith("not in the model: ")]
+    for effect, row in effects.items():
+        assert f"{effect} ({row['size'] or 'size unknown'})" in line
+        assert f"<strong>{effect.capitalize()}</strong>" in page
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.core.provenance import as_text
 from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
-from tribolab.records.part_records import CurveRecord, SurfaceRecord
+from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
 from tribolab.records.runs.run_record import RunRecord
@@ -167,6 +167,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         lines += _roughness(outcome)
         few = known if len(known) <= _HANDFUL else ()
         lines += [f"{surface.name}: {text}" for surface in few for text in _doubts(surface)]
+    lines += _left_out(outcome)
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     if _is_uncalibrated(outcome):
         lines.append(
@@ -263,6 +264,17 @@ def _roughness(outcome: Outcome) -> list[str]:
         if entry and entry.record.rows and entry.record.rows.roughness:
             rows.append((surface.name, entry.record.rows.roughness))
     return roughness_in_words(rows)
+
+
+def _left_out(outcome: Outcome) -> list[str]:
+    """Return a line on effects that the models leave out, with their sizes in the first model."""
+    for model in outcome.models:
+        entry = outcome.store.get("model", model.name, ModelRecord)
+        if entry and entry.record.rows and entry.record.rows.not_in_model:
+            effects = entry.record.rows.not_in_model
+            named = [f"{e['effect']} ({e['size'] or 'size unknown'})" for e in effects]
+            return [f"not in the model: {'; '.join(named)}"]
+    return []
 
 
 def _doubts(surface: SurfaceOutcome) -> list[str]:

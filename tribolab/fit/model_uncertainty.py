@@ -15,6 +15,7 @@ from tribolab.contact.persson import rough_band
 from tribolab.core.errors import AnalysisError
 from tribolab.core.validity import reasons_of, together
 from tribolab.fit import limits
+from tribolab.fit.left_out import left_out, left_out_words
 from tribolab.fit.unknowns import Range, Unknowns, merge_old_options
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
@@ -80,8 +81,8 @@ def model_uncertainty(
         [1], relative change of sigma_f with which each end fits the given curve. The curves
         themselves are ``friction_coefficient_varied`` (variation, range_end, sliding_speed), NaN
         for a missing end. The attribute ``not_varied`` lists unknowns that were not varied, with
-        reasons; ``validity`` and ``validity_reasons`` also name variations beyond the theory's
-        limits.
+        reasons, ``not_in_model`` effects that are left out, with their size; ``validity`` and
+        ``validity_reasons`` also name variations beyond the theory's limits.
 
     Raises
     ------
@@ -177,6 +178,7 @@ def model_uncertainty(
         data.assign_attrs(curve.attrs),
         **{"load_N" if contact.is_round else "load_N_m": force},
         not_varied="; ".join(f"{name}: {reason}" for name, reason in left + held_fixed(base)),
+        not_in_model=left_out_words(left_out(contact, force, base.viscosity, psd)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",
         **together([curve.attrs, *attributes]),

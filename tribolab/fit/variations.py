@@ -8,7 +8,6 @@ import numpy as np
 
 from tribolab.contact.area import alternative_area_theory
 from tribolab.contact.separation import separation_table
-from tribolab.fit.left_out import left_out
 from tribolab.fit.stated_ranges import (
     LOAD_RANGE,
     RADIUS_RANGE,
@@ -213,7 +212,7 @@ def held_fixed(base: Base) -> list[Skipped]:
     fixed |= dict(_FIXED if base.psd is None else _FIXED + _FIXED_IF_ROUGH)
     if base.psd is not None and base.work_of_adhesion is not None:
         fixed["contact area"] = _WITH_ADHESION
-    return [*(Skipped(name, reason) for name, reason in fixed.items()), *left_out(base)]
+    return [Skipped(name, reason) for name, reason in fixed.items()]
 
 
 def _stated_text(base: Base) -> str:

@@ -127,6 +127,8 @@ class ModelRows:
         A row per variation of an uncertain input.
     not_varied
         Inputs kept fixed.
+    not_in_model
+        Effects that are left out, each with its size, if it can be estimated, and the reason.
     shift
         Relative change of the shear stress due to the spectrum's error, downwards and upwards.
     validity
@@ -139,6 +141,7 @@ class ModelRows:
     curve: tuple[Row, ...]
     sensitivity: tuple[Row, ...] = ()
     not_varied: str = ""
+    not_in_model: tuple[Row, ...] = ()
     shift: tuple[float, float] | None = None
     validity: str = ""
     traction: tuple[TractionPoint, ...] = ()

@@ -17,6 +17,7 @@ from tribolab.core.errors import AnalysisError
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import explain, speed_text
 from tribolab.fit.fit_settings import FitSettings
+from tribolab.fit.left_out import left_out
 from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
@@ -45,7 +46,8 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
 
     ``curve``: the model over the campaign's speeds; ``fit``: model and points at the measured
     speeds, with the fitted shear stress as attribute; ``profiles`` and ``factors`` of the leading
-    model of a surface; ``uncertainty`` if requested.
+    model of a surface; ``uncertainty`` if requested; ``left_out``: effects that are not in the
+    model.
 
     Raises
     ------
@@ -126,6 +128,14 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
                 contact, psd, liquid, load, interface, solver=solver, unknowns=unknowns
             ),
         )
+    found = left_out(contact, load, model.viscosity, psd)
+    groups["left_out"] = xr.Dataset(
+        {
+            "size": ("effect", np.array([effect.size for effect in found], dtype=str)),
+            "reason": ("effect", np.array([effect.why for effect in found], dtype=str)),
+        },
+        {"effect": np.array([effect.name for effect in found], dtype=str)},
+    )
     return groups, findings + limit_findings(groups)
 
 

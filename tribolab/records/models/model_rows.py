@@ -53,6 +53,13 @@ FITTED = {  # columns of a fit, with their meaning if the name does not explain 
 }
 
 
+LEFT_OUT = {  # columns of an effect that is not in the model, and their meanings
+    "effect": "",
+    "size": "estimated for this contact; empty if not known",
+    "reason": "what the model assumes instead",
+}
+
+
 def model_rows(
     groups: Mapping[str, xr.Dataset],
     medium: str,
@@ -64,7 +71,7 @@ def model_rows(
     Parameters
     ----------
     groups
-        ``curve``; if present: ``fit``, ``uncertainty``.
+        ``curve``; if present: ``fit``, ``uncertainty``, ``left_out``, ``traction``.
     medium, normal_force
         Medium and load [N] of the model.
     adhesion
@@ -89,6 +96,9 @@ def model_rows(
             not_varied=str(varied.attrs["not_varied"]),
             shift=shear_stress_shift(varied),
         )
+    if "left_out" in groups:
+        effects = groups["left_out"].to_dataframe().reset_index()
+        rows = replace(rows, not_in_model=plain_rows(effects[list(LEFT_OUT)]))
     if "traction" in groups:
         rows = replace(rows, traction=plain_rows(traction_table(groups["traction"])))
     return rows

@@ -92,6 +92,7 @@ def reported_model(model: ModelOutcome, rows: ModelRow | None) -> ReportedModel:
         fit=rows.fit if rows else None,
         sensitivity=rows.sensitivity if rows else (),
         not_varied=rows.not_varied if rows else "",
+        not_in_model=rows.not_in_model if rows else (),
         validity=rows.validity if rows else "",
     )
 

@@ -17,7 +17,7 @@ from tribolab.records.annotations import Columns, Natural, means, one_of
 from tribolab.records.judgement import Limits
 from tribolab.records.models.joint_record import JointRecord
 from tribolab.records.models.mode_record import EvidenceRow
-from tribolab.records.models.model_rows import FITTED
+from tribolab.records.models.model_rows import FITTED, LEFT_OUT
 from tribolab.records.part_records import BudgetRow, FigureRecord, Point, TractionPoint
 from tribolab.records.parts import Row
 from tribolab.records.runs.run_record import RunFacts
@@ -72,6 +72,7 @@ FitRow = Annotated[
     Row, Columns(FITTED | BESIDE_FIT, texts=_FIT_TEXTS, counts=("degrees_of_freedom",))
 ]
 SensitivityRow = Annotated[Row, Columns(SENSITIVE, texts=("variation", "low", "high", "reason"))]
+LeftOutRow = Annotated[Row, Columns(LEFT_OUT, texts=tuple(LEFT_OUT))]
 SpeedRow = Annotated[
     Row,
     Columns(
@@ -173,6 +174,7 @@ class ReportedModel(ReportedPart):
     fit: FitRow | None
     sensitivity: tuple[SensitivityRow, ...]
     not_varied: str
+    not_in_model: tuple[LeftOutRow, ...]
     validity: Annotated[str, means(_VALIDITY)]
 
 
