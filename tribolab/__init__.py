@@ -98,6 +98,8 @@ _PUBLIC = {
     "model_inputs": "tribolab.fit.model_inputs",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
+    "two_body_friction": "tribolab.rubber.two_bodies",
+    "RubberBody": "tribolab.rubber.two_bodies",
     "read_modulus": "tribolab.rubber.modulus",
     "PronySeries": "tribolab.rubber.prony",
     "WilliamsLandelFerry": "tribolab.rubber.temperature",
@@ -195,6 +197,8 @@ __all__ = [
     "model_inputs",
     "model_uncertainty",
     "viscoelastic_friction",
+    "two_body_friction",
+    "RubberBody",
     "read_modulus",
     "PronySeries",
     "WilliamsLandelFerry",
@@ -284,6 +288,7 @@ if TYPE_CHECKING:
     from tribolab.rubber.modulus import read_modulus
     from tribolab.rubber.prony import PronySeries
     from tribolab.rubber.temperature import WilliamsLandelFerry, flash_temperature, modulus_at
+    from tribolab.rubber.two_bodies import RubberBody, two_body_friction
     from tribolab.surface.extrapolation import extrapolate
     from tribolab.surface.form import fill_dropouts, remove_form
     from tribolab.surface.roughness import roughness_parameters, spectral_roughness

@@ -11,7 +11,8 @@ from tribolab.contact.persson import contact_area_ratio
 from tribolab.core.errors import AnalysisError
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, FractionalZener, TabulatedModulus, read_modulus
-from tribolab.surface.moments import spectral_moment
+from tribolab.rubber.two_bodies import RubberBody, two_body_friction
+from tribolab.surface.moments import band, spectral_moment
 
 SPEEDS = np.geomspace(1e-6, 1e-2, 13)
 
@@ -68,7 +69,7 @@ def test_the_order_of_magnitude_does_not_hang_on_the_stand_in(exponent, time):
 def test_friction_does_not_hang_on_the_quadrature(monkeypatch):
     coarse = viscoelastic_friction(SPEEDS, 4.17e4, reference_psd("Sb-R"), PDMS_STAND_IN)
     monkeypatch.setattr("tribolab.rubber.friction._ANGLES", 160)
-    monkeypatch.setattr("tribolab.rubber.friction._PER_DECADE", 100)
+    monkeypatch.setattr("tribolab.rubber.friction.PER_DECADE", 100)
     fine = viscoelastic_friction(SPEEDS, 4.17e4, reference_psd("Sb-R"), PDMS_STAND_IN)
     for name in ("friction_coefficient", "contact_area_ratio"):
         np.testing.assert_allclose(coarse[name], fine[name], rtol=1e-4)
@@ -114,6 +115,33 @@ def test_a_measured_master_curve_gives_friction(shared_data):
     assert ((found.friction_coefficient > 0) & (found.friction_coefficient < 1)).all()
     elastic = contact_area_ratio(1e6, reference_psd("Sb-R"), table.storage[0] / 0.75)
     assert (found.contact_area_ratio < elastic).all()
+
+
+def test_two_bodies_of_which_one_is_rigid_or_smooth_are_a_rubber_on_a_rough_surface():
+    psd, rigid = reference_psd("Sb-S"), FractionalZener(1e19, 1e19, 1e-9, 0.5)
+    alone = viscoelastic_friction(SPEEDS, 1e5, psd, PDMS_STAND_IN)
+    rubber = RubberBody(PDMS_STAND_IN)
+    found = two_body_friction(SPEEDS, 1e5, RubberBody(rigid, psd), rubber)
+    for name in ("friction_coefficient", "contact_area_ratio"):
+        np.testing.assert_allclose(found[name], alone[name], rtol=1e-8)
+    # roughness of the rubber moves with it and deforms the rigid body only: no loss
+    own = two_body_friction(SPEEDS, 1e5, RubberBody(rigid), RubberBody(PDMS_STAND_IN, psd))
+    assert np.all(np.abs(own.friction_coefficient) < 1e-8)
+
+
+def test_the_roughness_of_each_body_dissipates_in_the_other():
+    """At light contact half the roughness on each of two equal bodies rubs as all on one."""
+    psd = reference_psd("Sb-R")
+    one = two_body_friction(SPEEDS, 1e4, RubberBody(PDMS_STAND_IN, psd), RubberBody(PDMS_STAND_IN))
+    half = RubberBody(PDMS_STAND_IN, psd * 0.5)
+    both = two_body_friction(SPEEDS, 1e4, half, half)
+    for name in ("friction_coefficient", "contact_area_ratio"):
+        np.testing.assert_allclose(both[name], one[name], rtol=1e-10)
+    smooth, long = (RubberBody(PDMS_STAND_IN, s) for s in (None, band(psd, 1e3, 1e6)))
+    alone, added = (two_body_friction(SPEEDS, 1e4, half, b) for b in (smooth, long))
+    assert np.all(added.contact_area_ratio < alone.contact_area_ratio)
+    with pytest.raises(AnalysisError, match="at least one body"):
+        two_body_friction(SPEEDS, 1e4, RubberBody(PDMS_STAND_IN), RubberBody(PDMS_STAND_IN))
 
 
 def test_a_smooth_surface_causes_no_friction_and_is_in_complete_contact():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -23,7 +25,8 @@ from tribolab.surface.moments import (
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import labelled, stamp
 
-_PER_DECADE = 60  # wavenumbers per decade if the spectrum has fewer nodes
+PER_DECADE = 60  # wavenumbers per decade if the spectrum has fewer nodes
+Excitation = tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]  # spectrum, E*(omega)
 _ANGLES = 24  # Gauss-Legendre points on a quarter turn
 
 
@@ -101,27 +104,24 @@ def viscoelastic_friction(
         raise AnalysisError(
             f"poisson_ratio: a value above -1 and at most 0.5 is wanted; got {poisson_ratio:g}"
         )
-    speed, over = labelled(sliding_speed, "sliding_speed"), labelled(pressure, "pressure")
-    if speed.ndim > 1 or np.any(speed.values < 0) or not np.all(np.isfinite(speed.values)):
-        raise AnalysisError(
-            "sliding_speed: finite speeds of at least 0 m/s along one dimension are wanted"
-        )
-    if not np.all((over.values > 0) & (over.values < np.inf)):
-        raise AnalysisError(
-            f"pressure: it must be above zero and finite; the lowest is {over.values.min():g} Pa"
-        )
+    speed, over = checked_sliding(sliding_speed, pressure)
     work = 0.0
     if work_of_adhesion is not None:
         work = to_si(work_of_adhesion, "J/m^2", name="work_of_adhesion")
     growth = None
     if work > 0 and not complete_contact:
         growth = _growth(over, psd, float(modulus(0.0).real) / (1 - poisson_ratio**2), work)
-    shape_of = poisson_ratio, complete_contact, growth, area
-    friction, touching = _solve(speed, over, psd, modulus, *shape_of)
+    q, spectrum = spectrum_arrays(psd)
+
+    def solve(modulus: Modulus) -> tuple[np.ndarray, np.ndarray]:
+        excited = [(spectrum, lambda omega: modulus(omega) / (1 - poisson_ratio**2))]
+        return solve_hysteresis(speed, over, q, excited, complete_contact, growth, area)
+
+    friction, touching = solve(modulus)
     rise = _heating(friction, touching, speed, over, psd)
     valid = examine("viscoelastic_friction", slope=rms_slope(psd), heating=rise)
     if isinstance(modulus, TabulatedModulus):
-        other = _solve(speed, over, psd, modulus.continued, *shape_of)
+        other = solve(modulus.continued)
         valid = together([valid, _frequency_validity((friction, touching), other, speed, modulus)])
     dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
     return stamp(
@@ -141,29 +141,58 @@ def viscoelastic_friction(
     )
 
 
-def _solve(
+def checked_sliding(
+    sliding_speed: str | ArrayLike | xr.DataArray, pressure: str | ArrayLike | xr.DataArray
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return sliding speeds [m/s] and pressures [Pa]; AnalysisError if one is impossible."""
+    speed, over = labelled(sliding_speed, "sliding_speed"), labelled(pressure, "pressure")
+    if speed.ndim > 1 or np.any(speed.values < 0) or not np.all(np.isfinite(speed.values)):
+        raise AnalysisError(
+            "sliding_speed: finite speeds of at least 0 m/s along one dimension are wanted"
+        )
+    if not np.all((over.values > 0) & (over.values < np.inf)):
+        raise AnalysisError(
+            f"pressure: it must be above zero and finite; the lowest is {over.values.min():g} Pa"
+        )
+    return speed, over
+
+
+def solve_hysteresis(
     speed: xr.DataArray,
     over: xr.DataArray,
-    psd: xr.Dataset,
-    modulus: Modulus,
-    poisson_ratio: float,
-    complete_contact: bool,
-    growth: np.ndarray | None,
-    theory: AreaTheory,
+    nodes: np.ndarray,
+    excited: Sequence[Excitation],
+    complete_contact: bool = False,
+    growth: np.ndarray | None = None,
+    area: AreaTheory = "persson",
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the friction coefficient and area at the largest wavenumber (pressures, speed)."""
-    q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
-    stored, lost = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
+    """Return the friction coefficient and area at the largest wavenumber (pressures, speed).
+
+    Parameters
+    ----------
+    speed, over
+        Sliding speeds and pressures.
+    nodes, excited
+        Wavenumbers; and the spectra there, each with the modulus E* [Pa] over angular frequency
+        of the contact that it deforms.
+    complete_contact, growth, area
+        Whether contact is complete; increase by adhesion; theory of the area.
+    """
+    stored, lost = np.zeros(()), np.zeros(())
+    for heights, modulus in excited:
+        q, spectrum = refine_nodes(nodes, heights, PER_DECADE)
+        energies = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
+        stored, lost = (x + spectrum * e for x, e in zip((stored, lost), energies, strict=True))
     # dims: pressures, then speeds and wavenumbers
-    relative = 1 / ((1 - poisson_ratio**2) * over.values.reshape(*over.shape, 1, 1))
-    g = relative**2 / 8 * cumulative(q, spectrum * stored, 3)
+    relative = 1 / over.values.reshape(*over.shape, 1, 1)
+    g = relative**2 / 8 * cumulative(q, stored, 3)
     with np.errstate(divide="ignore"):
-        area = np.ones_like(g) if complete_contact else area_of(1 / (2 * np.sqrt(g)), theory)
+        touching = np.ones_like(g) if complete_contact else area_of(1 / (2 * np.sqrt(g)), area)
     if growth is not None:
-        area = np.minimum(area * growth, 1.0)
-    integrand = spectrum * area * (1 + area**2) / 2 * lost
+        touching = np.minimum(touching * growth, 1.0)
+    integrand = touching * (1 + touching**2) / 2 * lost
     friction = relative[..., 0] / 2 * bin_integrals(q, integrand, 3).sum(axis=-1)
-    return friction, area[..., -1]
+    return friction, touching[..., -1]
 
 
 def _heating(
@@ -181,7 +210,7 @@ def _heating(
 
 def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
     """Return the ratio of P(q) with and without adhesion, at rest (pressures, 1, wavenumber)."""
-    q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
+    q, spectrum = refine_nodes(*spectrum_arrays(psd), PER_DECADE)
     bound = adhesion(over.values.ravel(), psd, stiffness, work)
     nodes = bound["wavenumber"].values
     with np.errstate(divide="ignore"):
@@ -219,7 +248,9 @@ def _frequency_validity(
     )
 
 
-def _turn_averages(frequency: np.ndarray, modulus: Modulus) -> tuple[np.ndarray, np.ndarray]:
+def _turn_averages(
+    frequency: np.ndarray, modulus: Callable[[np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
     """Return integrals of |E|^2 and cos(phi) Im E over a turn of phi, with E at frequency cos(phi).
 
     Both are four times their integral over a quarter: E(-omega) is the conjugate of E(omega).
