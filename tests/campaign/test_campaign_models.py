@@ -236,6 +236,32 @@ def test_terminal_page_and_report_list_what_is_not_in_the_model(outcome):
 
 
 @pytest.mark.slow
+def test_a_measured_contact_area_gives_its_shear_stress_beside_the_theory_s(campaign, outcome):
+    text = campaign.read_text("utf-8").replace("[[run]]\n", '[[run]]\ncontact_area = "7.4 cm^2"\n')
+    file = campaign.with_name("camera.toml")
+    file.write_text(text, "utf-8")
+    folder = campaign.parent / "camera"
+    folder.mkdir()
+    made = process(load_campaign(file), folder, previous=outcome.folder)
+    write_report(made)
+    (model,) = json.loads((folder / "report.json").read_text())["models"]
+    (before,) = json.loads((outcome.folder / "report.json").read_text())["models"]
+    fit = model["fit"]
+    assert fit["measured_area_m2"] == pytest.approx(7.4e-4)
+    assert before["fit"]["measured_area_m2"] is None
+    # Hertz: 7.43 mm x 100 mm at 31 N
+    assert fit["hertz_area_m2"] == pytest.approx(7.434e-4, rel=1e-3)
+    points = read_netcdf(folder / made.models[0].data_file, "fit")
+    mu = float(points.friction_coefficient[0])
+    assert fit["measured_shear_stress_Pa"] == pytest.approx(mu * 31 / 7.4e-4, rel=0.01)
+    # at the lowest speed nearly all friction is solid: sigma times the real area
+    nominal = fit["shear_stress_Pa"] * fit["real_area_m2"] / fit["hertz_area_m2"]
+    assert fit["measured_shear_stress_Pa"] == pytest.approx(nominal, rel=0.15)
+    assert "Measured area (mm²)" in (folder / "report.html").read_text("utf-8")
+    assert "Measured area (mm²)" not in (outcome.folder / "report.html").read_text("utf-8")
+
+
+@pytest.mark.slow
 def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, monkeypatch):
     text = campaign.read_text("utf-8")
     file = campaign.with_name("radius.toml")

@@ -237,6 +237,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
         _model_inputs(frictions),
         traction,
         *_temperature(frictions),
+        _contact_area(frictions),
     )
 
 
@@ -247,6 +248,12 @@ def _temperature(frictions: Sequence[xr.Dataset]) -> tuple[float | None, float]:
         return None, 0.0
     within = [f.attrs["temperature_spread_K"] for f in frictions]
     return float(np.mean(known)), float(np.hypot(np.std(known), np.mean(within)))
+
+
+def _contact_area(frictions: Sequence[xr.Dataset]) -> float | None:
+    """Return the mean measured contact area [m2] of runs that all have one."""
+    known = [f.attrs["contact_area_m2"] for f in frictions if "contact_area_m2" in f.attrs]
+    return float(np.mean(known)) if known and len(known) == len(frictions) else None
 
 
 def _with_entrainment_speed(curve: xr.Dataset, ratio: float | None) -> xr.Dataset:

@@ -91,6 +91,8 @@ class CurveRecord:
         speed with several ratios.
     temperature_K, temperature_spread_K
         Mean and standard deviation of the temperature during sliding; None if not recorded.
+    contact_area_m2
+        Measured contact area; None if unknown.
     """
 
     outcome: CurveOutcome
@@ -106,6 +108,7 @@ class CurveRecord:
     traction: tuple[TractionPoint, ...] = ()
     temperature_K: float | None = None
     temperature_spread_K: float = 0.0
+    contact_area_m2: float | None = None
 
     @property
     def done(self) -> bool:

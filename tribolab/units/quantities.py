@@ -38,6 +38,7 @@ _ROWS = [
     ("normal_stress", "\\sigma_0", "Pa", "nominal normal stress"),
     ("shear_stress", "\\sigma_f", "Pa", "shear stress"),
     ("temperature", "T", "K", "temperature"),
+    ("contact_area", "A", "m2", "measured contact area"),
     ("ambient_pressure", "p_a", "Pa", "ambient pressure"),
     ("set_speed", "v_set", "m/s", "set-point of the sliding speed"),
     ("set_normal_force", "F_set", "N", "set-point of the normal force"),

@@ -94,6 +94,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
             area=model.area,
             adhesion="without" if model.work_of_adhesion is None else "with",
             other_area=alternative_area_theory(model.area),
+            **_areas(model.contact_area, contact, load, fit.curve, measured),
             shear_stress_other_area_Pa=again.shear_stress,
         )
     groups["curve"].attrs["abscissa_error"] = model.abscissa_error
@@ -307,6 +308,30 @@ def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
         corrected_shear_stress_error_Pa=float(fit.corrected_shear_stress_error),
         error_from=fit.error_from,
     )
+
+
+def _areas(
+    measured_area: float | None,
+    contact: Contact,
+    load: float,
+    curve: xr.Dataset,
+    measured: xr.Dataset,
+) -> dict[str, float]:
+    """Return measured and computed contact areas [m2], and the shear stress F/A [Pa] measured.
+
+    Areas and stress are those at the lowest measured speed of the fit.
+    """
+    a = float(hertz_half_width(load, contact))
+    nominal = float(np.pi * a**2 if contact.is_round else 2 * a * contact.force(1.0))
+    slowest = curve.isel(sliding_speed=0)
+    mu = float(measured["friction_coefficient"].sel(sliding_speed=slowest["sliding_speed"]))
+    area = np.nan if measured_area is None else measured_area
+    return {
+        "measured_area_m2": area,
+        "hertz_area_m2": nominal,
+        "real_area_m2": float(slowest["contact_area_ratio"]) * nominal,
+        "measured_shear_stress_Pa": mu * contact.force(load) / area,
+    }
 
 
 def _profiles(

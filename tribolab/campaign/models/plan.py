@@ -71,6 +71,8 @@ class PlannedModel:
         Shear rates [1/s] and relative viscosities [1] of a shear-thinning liquid.
     temperature, tempered
         Temperature recorded while sliding [K] or None, and whether the viscosity depends on it.
+    contact_area
+        Measured contact area [m2]; None if unknown.
     missing
         What the campaign does not define; "" if the model can be computed.
     source, source_sha256
@@ -98,6 +100,7 @@ class PlannedModel:
     flow_curve: tuple[tuple[float, ...], tuple[float, ...]] | None = None
     temperature: float | None = None
     tempered: bool = False
+    contact_area: float | None = None
     missing: str = ""
     source: str = ""
     source_sha256: str = ""
@@ -166,6 +169,7 @@ def plan_models(
             flow_curve=_flow_curve(campaign, curve.medium),
             temperature=record.temperature_K,
             tempered=campaign.tempered(curve.medium),
+            contact_area=record.contact_area_m2,
             viscosity_range=viscosity.bounds,
             youngs_modulus_range=modulus_range,
             abscissa_error=float(np.hypot(viscosity.error, stated.get("speed", 0.0))),

@@ -79,7 +79,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     # imported late for a quick start
     from tribolab.friction.decisions.decide import decide, remove_decisions
     from tribolab.friction.segments.find import find_segments
-    from tribolab.friction.temperature import sliding_temperature
+    from tribolab.friction.temperature import sliding_area, sliding_temperature
 
     read = earlier and earlier_signals(earlier)
     read = _read(run) if read is None else read
@@ -97,6 +97,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     segments, whole = _steady_part(run, signals, segments, discard, steady)
     friction, slip, said = _evaluate(run, signals, segments)
     friction.attrs.update(sliding_temperature(signals, segments))
+    friction.attrs.update(sliding_area(signals, segments))
     if run.decisions and before[0] is None:  # the numbers are the same
         before = remove_decisions(friction), said.status_as_found
     signals = said.marked
@@ -202,6 +203,8 @@ def _add_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
         from tribolab.friction.oscillation.critical_stiffness import STIFFNESS
 
         signals.attrs[STIFFNESS] = run.stiffness
+    if run.contact_area is not None:
+        signals.attrs["contact_area_m2"] = run.contact_area
     if run.sliding_speed is not None:
         signals.attrs |= _stated_speed(signals, run.sliding_speed)
     return _add_stated_load(signals)

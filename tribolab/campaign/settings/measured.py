@@ -154,6 +154,9 @@ class RunEntry(Table):
     stiffness: Annotated[float, PositiveSi("N/m", "12 kN/m")] | None = None
     """Stiffness of the rig between drive and contact, in the direction of sliding; compared with
     the critical stiffness for stick-slip."""
+    contact_area: Annotated[float, PositiveSi("m2", "12 mm^2")] | None = None
+    """Measured contact area (camera), if the files do not record it; its shear stress is shown next
+    to that of the theory."""
     rectified: bool | None = None
     """Whether friction was recorded without its sign; default: found from the reversals."""
     labels: dict[SomeText, SomeText] = {}

@@ -59,6 +59,8 @@ class PlannedRun:
         Between contact and force sensor [kg], if the campaign file gives it.
     stiffness
         Of the rig in the direction of sliding [N/m], if the campaign file gives it.
+    contact_area
+        Measured contact area [m2], if the campaign file gives it.
     dead_weight
         Of the reference that it is a run of [N], where one is stated.
     segments, friction
@@ -87,6 +89,7 @@ class PlannedRun:
     zero: str | None = None
     moving_mass: float | None = None
     stiffness: float | None = None
+    contact_area: float | None = None
     dead_weight: float | None = None
     segments: Arguments = field(default_factory=dict)
     friction: Arguments = field(default_factory=dict)
@@ -282,6 +285,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "zero": zero,
         "moving_mass": entry.moving_mass,
         "stiffness": entry.stiffness,
+        "contact_area": entry.contact_area,
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction_options(entry),
         "quality": campaign.quality_options(entry),
