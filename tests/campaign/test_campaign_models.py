@@ -230,6 +230,7 @@ def test_terminal_page_and_report_list_what_is_not_in_the_model(outcome):
     assert {"edge load", "misalignment", "crown", "squeeze-out time", "lay"} <= set(effects)
     page = (outcome.folder / "report.html").read_text("utf-8")
     (line,) = [line for line in outcome_lines(outcome) if line.startswith("not in the model: ")]
+    assert "film ratio" in page and "regimes over viscosity" in page
     for effect, row in effects.items():
         assert f"{effect} ({row['size'] or 'size unknown'})" in line
         assert f"<strong>{effect.capitalize()}</strong>" in page

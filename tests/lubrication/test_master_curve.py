@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 import xarray as xr
+from contact_cases import reference_psd
 
 import tribolab as tl
 from tribolab.contact.geometry import LineContact, PointContact
 from tribolab.contact.rolling import rolling_friction
 from tribolab.core.errors import AnalysisError
+from tribolab.figures.subjects.master import master_curve
 from tribolab.fit.master_curve import collapse_test
+from tribolab.surface.moments import rms_roughness
 
 VISCOSITIES = [0.02, 0.2, 1.4]
 SPEEDS = np.geomspace(1e-6, 1e-1, 13)
@@ -47,6 +50,19 @@ def test_the_figure_has_every_liquid_the_common_curve_and_the_regimes():
     figure = tl.plot.master_curve(curves, VISCOSITIES, names=["a", "b", "c"], collapse=collapse)
     labels = tl.plot.figure_data(figure).series.unique().tolist()
     assert labels[:3] == ["a", "b", "c"] and labels[3].startswith("one curve")
+
+
+def test_the_regime_map_has_the_film_ratio_and_where_it_is_1_and_3():
+    contact, psd = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5), reference_psd("Sb-S")
+    curve = tl.stribeck_curve(contact, psd, 1.4, 310.0, 1e6, np.geomspace(1e-8, 0.1, 20))
+    height = rms_roughness(psd)
+    spec = master_curve.spec([curve], [1.4], model=curve, rms_roughness=height)
+    assert len(spec.panels) == 2
+    (film,) = [one for one in spec.series if one.panel == 1]
+    np.testing.assert_allclose(film.y, curve.central_separation / height)
+    places = [mark.value for mark in spec.marks if mark.side == "x"]
+    at_marks = np.interp(np.log(places), np.log(film.x), np.log(film.y))
+    np.testing.assert_allclose(np.exp(at_marks), [1.0, 3.0], rtol=1e-9)
 
 
 def test_rolling_loses_what_greenwood_says():

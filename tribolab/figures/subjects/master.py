@@ -40,8 +40,8 @@ def master_curve(
     collapse
         From `tribolab.collapse_test`: its common curve and p-value.
     model
-        A computed curve with ``viscosity_Pa_s``; with `rms_roughness` [m] the film ratio shows
-        where mixed lubrication begins and ends.
+        A computed curve with ``viscosity_Pa_s``; with `rms_roughness` [m] a second panel has the
+        film ratio, and marks show where mixed lubrication begins and ends.
 
     Examples
     --------
@@ -68,11 +68,19 @@ def master_curve(
         series.append(Series("model", at, mu, "line", 6))
         if rms_roughness > 0:
             film = model["central_separation"].values[_speed(model) > 0] / rms_roughness
+            series.append(Series("film ratio", at, film, "line", 6, panel=1))
             marks = _regimes(at, film)
     x = Axis("viscosity × speed", "N/m", log=True, column="viscosity_speed_N_m")
-    panel = Panel(x, axis_of("friction_coefficient", log=True))
+    panels = [Panel(x, axis_of("friction_coefficient", log=True))]
+    if series[-1].panel == 1:
+        ratio = Axis("film ratio h/h_rms", log=True, column="film_ratio")
+        panels.append(Panel(x, ratio, height=0.6))
     return FigureSpec(
-        id="master_curve", title="Master curve", panels=(panel,), series=tuple(series), marks=marks
+        id="master_curve",
+        title="Master curve",
+        panels=tuple(panels),
+        series=tuple(series),
+        marks=marks,
     )
 
 
@@ -88,10 +96,10 @@ def _reduced(curve: xr.Dataset, viscosity: float) -> tuple[np.ndarray, np.ndarra
 
 
 def _regimes(at: np.ndarray, film: np.ndarray) -> tuple[Mark, ...]:
-    """Mark the boundaries of mixed lubrication on the axis."""
-    return tuple(
-        Mark("x", float(np.exp(np.interp(np.log(limit), np.log(film), np.log(at)))),
-             style="dotted", above=text)
-        for limit, text in _MIXED
-        if film[0] < limit < film[-1]
-    )  # fmt: skip
+    """Mark the boundaries of mixed lubrication: the speed above, the film ratio below."""
+    marks = [Mark("y", limit, style="dotted", panel=1) for limit, _ in _MIXED]
+    for limit, text in _MIXED:
+        if film[0] < limit < film[-1]:
+            place = float(np.exp(np.interp(np.log(limit), np.log(film), np.log(at))))
+            marks.append(Mark("x", place, style="dotted", above=text))
+    return tuple(marks)

@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from tribolab.campaign.store.data_files import read_data
+from tribolab.core.errors import AnalysisError
 from tribolab.core.wording import force_text, is_dry, percent
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, safe
 from tribolab.figures.subjects.film import film_profiles, lubrication_factors
+from tribolab.figures.subjects.master import master_curve
 from tribolab.figures.subjects.mixed import mixed_curve, shear_stress
+from tribolab.fit.master_curve import collapse_test
 from tribolab.records.models.model_words import shear_stress_u95, stress_interval
 from tribolab.records.parts import number_of
 from tribolab.records.wording import error_text
@@ -48,6 +51,7 @@ def model_specs(
     order = [*surfaces, *(row.model.surface for row in models)]
     return [
         *_curves(models, order, folder),
+        *_regime_maps(models, folder),
         shear_stress_figure(models, order),
         sensitivity(models, surface_colours(order)),
         *_profiles(models, folder),
@@ -180,6 +184,45 @@ def _curves(models: Sequence[ModelRow], order: Sequence[str], folder: Path) -> l
             figures.append(
                 _merged(specs, f"model-{safe(name)}", name, f"{alt}the residuals.", one_load=True)
             )
+    return figures
+
+
+def _regime_maps(models: Sequence[ModelRow], folder: Path) -> list[FigureSpec]:
+    """Return friction and film ratio over viscosity times speed, for each surface and load."""
+    groups: dict[tuple[str, float | None], list[ModelRow]] = {}
+    for row in models:
+        if row.fit is not None and {"fit", "curve", "factors"} <= set(row.model.parts):
+            groups.setdefault((row.model.surface, row.model.normal_force), []).append(row)
+    figures = []
+    for (surface, load), rows in groups.items():
+        fits, curves = ([_read(row, folder, part) for row in rows] for part in ("fit", "curve"))
+        roughness = _read(rows[0], folder, "factors").attrs["rms_roughness_m"]
+        viscosities = [curve.attrs["viscosity_Pa_s"] for curve in curves]
+        try:
+            collapse = collapse_test(fits, viscosities) if len(rows) > 1 else None
+        except AnalysisError:  # too few points: drawn without the test
+            collapse = None
+        spec = master_curve.spec(
+            fits,
+            viscosities,
+            names=[row.model.medium for row in rows],
+            collapse=collapse,
+            model=curves[0],
+            rms_roughness=roughness,
+        )
+        name = f"{surface or '–'}{'' if load is None else f' {force_text(load)}'}"
+        figures.append(
+            replace(
+                spec,
+                id=f"model-regimes-{safe(name)}",
+                section="model",
+                title=f"{name}: regimes over viscosity × speed",
+                note="Film ratio: computed central separation over h_rms; mixed lubrication from 1 "
+                f"to 3. Model: {rows[0].model.medium}.",
+                alt=f"Friction coefficient and film ratio of {name} over viscosity times speed.",
+                series=tuple(replace(one, surface=surface, load=load) for one in spec.series),
+            )
+        )
     return figures
 
 
