@@ -24,6 +24,7 @@ from tribolab.campaign.settings.naming.run_names import common_name, distinct, s
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.core.errors import ConfigError, TribolabError
 from tribolab.reading.kinds import repeats_by_name
+from tribolab.reading.moduli import read_modulus_table
 from tribolab.reading.runs.logs import group_files
 
 NAME, RESULTS = "campaign.toml", "results"
@@ -242,6 +243,7 @@ def campaign_text(
     name = paths[0].stem if len(paths) == 1 else raw.name
     runs, kinds = sorted_by_content(group_files(paths), instrument)
     if kinds.moduli and not (kinds.runs or kinds.scans):
+        read_modulus_table(kinds.moduli[0])  # raises if it is a sweep at one frequency
         raise ConfigError(
             f"{kinds.moduli[0]}: it holds a modulus over frequency, no run and no scan",
             cure=f'name it as modulus_file = "{kinds.moduli[0].name}" in [contact] of a campaign '

@@ -31,6 +31,13 @@ _COMMENT = re.compile(r"^\s*[#%]+\s?")
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
 _COMMA, _POINT = (re.compile(rf"(?<![\d{s}])\d+{s}\d+(?![\d{s}])") for s in (",", r"\."))
 _SHEAR = re.compile(r"\bshear|schub|scher|torque|drehmoment", re.IGNORECASE)
+# what a rheometer turns (TRIOS, RheoCompass), and how a DMA loads plates without turning them
+_TURNED = re.compile(
+    r"plate[\s-]*plate|parallel[\s-]plate|platte[\s-]*platte|\bcone\b|kegel|couette|concentric"
+    r"|\b(?:PP|CP|CC)\d{2}\b",
+    re.IGNORECASE,
+)
+_PRESSED = re.compile(r"compress|tension|tensile|cantilever|bend|druck|zug", re.IGNORECASE)
 Row = list[str]
 
 
@@ -176,6 +183,7 @@ _PAIRS = (
 
 def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], dec: str) -> Table:
     """Return the columns with their units, and all rows of numbers below, also of later blocks."""
+    named, columns = columns, _where_numbers_are(rows, place, columns)
     numeric = [
         n for n in range(place + 1, len(rows)) if numbers_of(rows[n], columns, dec) is not None
     ]
@@ -184,17 +192,32 @@ def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], de
     units = next((row for row in below if not all(map(_NUMBER.fullmatch, row))), [])
     told = {
         concept: column
-        if column.unit or column.place >= len(units)
+        if column.unit or named[concept].place >= len(units)
         # a unit may stand in brackets, or bare
-        else column._replace(unit=units[column.place].strip().strip("[]()").strip())
+        else column._replace(unit=units[named[concept].place].strip().strip("[]()").strip())
         for concept, column in columns.items()
     }
     labels = " ".join(rows[place])
     gs = normalise_label(told.get("storage_modulus", told.get("complex_modulus", _NONE)).label)
     tensile = gs.startswith("e") or "tensile" in labels.lower()
-    shear = True if gs.startswith("g") or _SHEAR.search(labels) is not None else None
+    above = " ".join(" ".join(row) for row in rows[:place])
+    turned = _TURNED.search(above) and not _PRESSED.search(above)
+    shear = True if gs.startswith("g") or _SHEAR.search(labels) or turned else None
     shear = False if tensile else shear
     return Table(told, [rows[n] for n in numeric], shear, dec)
+
+
+def _where_numbers_are(
+    rows: Sequence[Row], place: int, columns: dict[str, Column]
+) -> dict[str, Column]:
+    """Return the columns one to the left if a word before the names, "Interval data:", has no cell.
+
+    File: an export of RheoCompass whose rows begin with a number (imewei/rheojax).
+    """
+    numbers = (row for row in rows[place + 1 :] if row and all(map(_NUMBER.fullmatch, row)))
+    if rows[place][0].strip().endswith(":") and len(next(numbers, [])) == len(rows[place]) - 1:
+        return {concept: c._replace(place=c.place - 1) for concept, c in columns.items()}
+    return columns
 
 
 _NONE = Column(0, "", "", "")

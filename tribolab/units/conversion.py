@@ -29,6 +29,7 @@ _NUMBER = re.compile(r"^\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*
 _SPELLINGS = {
     "microns": "um",
     "micron": "um",
+    "mic": "um",
     "sec": "s",
     "secs": "s",
     "msec": "ms",

@@ -20,6 +20,7 @@ from tribolab.reading import cures
 from tribolab.reading.dialect.find import known_dialects, load_dialect
 from tribolab.reading.interpret.missing import missing_inputs
 from tribolab.reading.kinds import kind_of
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.source import check_regular
@@ -345,7 +346,8 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
 
         if any(is_stroke_frequency(*split_name(label)) for label in facts["not_used"]):
             names.add("frequency")
-    rig = {"crank"} if "drive" in facts["metadata"] else set()  # if a crank turns
+    turned = any(part_pattern("sine").search(normalise_label(x)) for x in facts["not_used"])
+    rig = {"crank"} if "drive" in facts["metadata"] or turned else set()  # if a crank turns
     if "friction_force" in columns and reversals(columns["friction_force"]):
         rig.add("reversals")
     return [f"  missing: {lack}" for lack in missing_inputs(names, rig)]

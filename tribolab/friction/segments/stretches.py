@@ -54,7 +54,8 @@ def velocity_source(run: xr.Dataset) -> str:
         raise AnalysisError(
             f"{name_of(run)}: the radius of the track is missing: how fast it turns is recorded, "
             'and no sliding speed; say radius = "(a length)" under [speed] of a description, for '
-            "which 'tribolab info FILE --write my.toml' asks in a terminal"
+            "which 'tribolab info FILE --write my.toml' asks in a terminal; if a crank drives "
+            "strokes, say stroke and frequency there, with source = 'stroke'"
         )
     raise AnalysisError(
         f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"

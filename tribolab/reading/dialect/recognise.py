@@ -74,7 +74,8 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
         raw = find_tables(file, dialect, head_only=True)
     except ReadError as error:
         # otherwise recognised, so that the error is reported
-        return None if rules.preamble else str(error)
+        named = all(name.partition(" [")[0] in text for name in rules.header)
+        return None if rules.preamble and named else str(error)
     names = {
         f"{name} [{unit}]" if unit else name
         for name, unit in zip(raw.tables[0].names, raw.tables[0].units, strict=True)

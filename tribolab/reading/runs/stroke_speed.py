@@ -14,7 +14,7 @@ _OTHER = 0.1  # relative tolerance of the drive's frequency
 _AS_LOUD = 0.5  # share of the usual variance above which a cycle is not at rest
 _FEW = 0.05  # share of the sliding cycles
 FEWEST_CYCLES = 3
-_DENSEST = 8  # samples per cycle, at least
+DENSEST = 8  # samples per cycle, at least: of fewer, only the mean speed is known
 
 
 class StrokeVelocity(NamedTuple):
@@ -73,7 +73,7 @@ def velocity_of_strokes(
     cycle = np.floor((time - time[0]) * frequency).astype(int)
     cycles = int(cycle[-1])  # complete cycles
     known = np.isfinite(friction) & (cycle < cycles)
-    if cycles < FEWEST_CYCLES or np.count_nonzero(known) < _DENSEST * cycles:
+    if cycles < FEWEST_CYCLES or np.count_nonzero(known) < DENSEST * cycles:
         return None
     counts = np.bincount(cycle[known], minlength=cycles)
     means = np.bincount(cycle[known], friction[known], minlength=cycles) / np.maximum(counts, 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import mmap
 import re
+from collections.abc import Sequence
 from itertools import islice
 
 from tribolab.core.errors import ReadError, shown
@@ -115,6 +116,15 @@ def parted_as_numbers(
     if len(joined) != width:
         return (), ()
     return tuple(split_name(name)[0] for name in joined), (None,) * width
+
+
+def counts_its_rows(rows: Sequence[str], delimiter: str) -> bool:
+    """Whether two rows parted by blanks begin with their numbers, for which no column is named.
+
+    File: xlook of biaxial rigs (jrleeman/LeemanNatComm2016).
+    """
+    first = [row.split()[0] for row in rows if delimiter == "whitespace" and row.strip()]
+    return len(first) == 2 and all(map(str.isdigit, first)) and int(first[1]) == int(first[0]) + 1
 
 
 def line_at(

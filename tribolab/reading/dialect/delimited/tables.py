@@ -11,6 +11,7 @@ from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.delimited.headers import (
     BOM,
     compiled,
+    counts_its_rows,
     header_starts,
     line_at,
     parted_as_numbers,
@@ -98,6 +99,8 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
         if end is not None and (last := end.search(content, body, min(limit, len(content)))):
             stop = last.start()
         width = _width(file, content, body, dialect)
+        if len(names) == width - 1 and _counted(file, content, body, dialect):
+            names, units = ("", *names), (None, *units)
         names, units = parted_as_numbers(names, units, width, dialect)
         before = _decode(content[origin : start if start > origin else body], file, dialect)
         if header.line is None and header.pattern is None and not header.skip:
@@ -119,6 +122,12 @@ def _width(file: File, content: bytes | mmap.mmap, body: int, dialect: Dialect) 
         return len(cells)
     second = len(split_row(line_at(file, content, below, dialect)[0], dialect.text.delimiter))
     return second if 0 < second < len(cells) and not any(cells[second:]) else len(cells)
+
+
+def _counted(file: File, content: bytes | mmap.mmap, body: int, dialect: Dialect) -> bool:
+    first, below = line_at(file, content, body, dialect)
+    second = line_at(file, content, below, dialect)[0]
+    return counts_its_rows([first, second], dialect.text.delimiter)
 
 
 def _decode(content: bytes, file: File, dialect: Dialect) -> str:

@@ -21,7 +21,8 @@ from tribolab.reading.interpret.names import (
     is_stroke_length,
 )
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
+from tribolab.reading.lexicon.lexicon import Role, normalise_label, part_pattern, role_of
+from tribolab.reading.runs.force_ratio import LARGEST
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES, Bare
 from tribolab.reading.unknown.model import DraftColumn, Kind
@@ -50,6 +51,7 @@ _MOTION = {"rotation_speed", "sliding_velocity", "position"}
 _DECIDING = FORCES | {"sliding_velocity", "rotation_speed"}
 _MIN_ROWS_FOR_ROTATION = 20
 _EXPLAINED_BY_ROTATION = 0.98  # share of a displacement's variance
+_SMALLEST_TURN = 2 * math.pi * 0.5e-3  # m, on the smallest track (physics.toml)
 _MOVING = 0.2  # of the fastest: slower, friction is turning
 _MIN_TURNS = 2  # one might be chance
 _AGREES = 0.9  # mean product of the signs: 95 % of the rows agree
@@ -160,6 +162,8 @@ def number_evidence(facts: Facts) -> Iterator[Evidence]:
             ratio = option.quantity in QUANTITIES and QUANTITIES[option.quantity].unit == "1"
             if ratio and (has_units or (sizes.size and np.median(sizes) < 2)):
                 yield Evidence(place, option.quantity, _PREFERRED + NEAR, "its size is a ratio's")
+            elif ratio and sizes.size and np.median(sizes) > LARGEST:
+                yield Evidence(place, option.quantity, RULED_OUT, "it is larger than a coefficient")
         if options[0].quantity == "time" and not (np.diff(values) >= 0).all():
             yield Evidence(place, "time", -_PREFERRED - NEAR, "it does not rise")
 
@@ -292,8 +296,13 @@ def stroke_setting_evidence(facts: Facts) -> Iterator[Evidence]:
 def stage_axis_evidence(facts: Facts) -> Iterator[Evidence]:
     """Rule out the axes of a machine's stage as sliding positions if something rotates.
 
-    File: Rtec MFT, "XYZ.X Position" (Dichimanaym/Tribometer-Data-Processing).
+    Files: Rtec MFT, "XYZ.X Position", and "Rotary.Position", which is an angle without a unit
+    (Dichimanaym/Tribometer-Data-Processing).
     """
+    for place in facts.places("position"):
+        name, unit, _ = facts.bare[place]
+        if unit is None and part_pattern("turns_in_angles").search(normalise_label(name)):
+            yield Evidence(place, "position", RULED_OUT, "the position of what turns: an angle")
     if facts.places("rotation_speed") or angle_of(facts.columns) is not None:
         for place in facts.places("position"):
             if is_axis(facts.bare[place][0]):
@@ -312,7 +321,9 @@ def rotation_evidence(facts: Facts) -> Iterator[Evidence]:
     rate, way = rate[known], way[known]
     if known.sum() < _MIN_ROWS_FOR_ROTATION or not rate.any():
         return
-    if _explained(way, np.cumsum(rate)) > _EXPLAINED_BY_ROTATION:
+    if _way_per_turn(facts, turning[0], ways[0]) < _SMALLEST_TURN:
+        yield Evidence(ways[0], "position", RULED_OUT, "the rotation slides much farther")
+    elif _explained(way, np.cumsum(rate)) > _EXPLAINED_BY_ROTATION:
         yield Evidence(ways[0], "position", 0.0, sure=True)
     elif _explained(np.abs(way), np.cumsum(np.abs(rate))) > _EXPLAINED_BY_ROTATION:
         why = "the distance slid whatever the direction; the rotation gives the speed"
@@ -320,6 +331,21 @@ def rotation_evidence(facts: Facts) -> Iterator[Evidence]:
     else:
         why = "a length that does not grow with the rotation: not the distance slid"
         yield Evidence(ways[0], "", RULED_OUT, why)
+
+
+def _way_per_turn(facts: Facts, turning: int, way: int) -> float:
+    """Return the length [m] that a column grows by in a turn; infinity without a clock.
+
+    File: a T-11 pin-on-disc tester, whose "Displacement [um]" is the wear.
+    """
+    clocks = [p for p in facts.places("time") if facts.bare[p][1] is not None]
+    if len(clocks) != 1:
+        return math.inf
+    units = [(clocks[0], "time"), (turning, "rotation_speed"), (way, "position")]
+    scales = [unit_conversion(str(facts.bare[p][1]), name)[0] for p, name in units]
+    time, rate, length = (k * facts.numbers[:, p] for (p, _), k in zip(units, scales, strict=True))
+    turned = np.nansum(np.abs(rate[1:]) * np.diff(time)) / (2 * math.pi)
+    return float(np.nansum(np.abs(np.diff(length))) / turned) if turned > 1 else math.inf
 
 
 def _explained(way: np.ndarray, turns: np.ndarray) -> float:

@@ -17,7 +17,7 @@ from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import unit_in_words
 
 _MAX_LINE = 300  # characters of a line that are looked at
-_PURE = ("1", "-")  # what stands for the unit of a pure number
+_PURE = ("1", "-", ".")  # what stands for the unit of a pure number
 
 
 def labelled(layout: Layout) -> list[DraftColumn]:

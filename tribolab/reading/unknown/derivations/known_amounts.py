@@ -102,7 +102,8 @@ def find_known(layout: Layout, understood: Understood) -> KnownRun:
     else:
         _add_surfaces(known, pair)
     crank = _crank(layout) if "rotation_speed" in known.given else None
-    facts = {"crank"} if crank is not None and not _has_track(known) else set()
+    turned = crank is not None or _turns_a_crank(known)
+    facts = {"crank"} if turned and not _has_track(known) else set()
     strokes = _add_strokes(known, crank="crank" in facts)
     _add_speeds(known, pair)
     _add_load(known)
@@ -232,6 +233,12 @@ def _crank(layout: Layout) -> Amount | None:
     said = [t for key, t in text_settings(layout) if drive.search(normalise_label(key))]
     crank = next((text for text in said if sine.search(normalise_label(text))), None)
     return None if crank is None else Amount(CRANK, f"({escaped(crank)})", None, None, crank)
+
+
+def _turns_a_crank(known: _Facts) -> bool:
+    """Whether a column is the angle of a crank, next to how fast it turns."""
+    sine, turning = part_pattern("sine"), "rotation_speed" in known.given
+    return turning and any(sine.search(normalise_label(c.label)) for c in known.columns)
 
 
 def _add_strokes(known: _Facts, *, crank: bool) -> Strokes | None:

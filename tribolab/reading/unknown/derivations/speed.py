@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
+
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, derive
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
+from tribolab.reading.runs.stroke_speed import DENSEST
 from tribolab.reading.unknown.derivations.candidate_lines import confirmed_value
 from tribolab.reading.unknown.derivations.known_amounts import KnownRun
 from tribolab.reading.unknown.derivations.model import DraftedFormula, Follows, Source, SpeedBy
@@ -15,6 +19,8 @@ from tribolab.reading.unknown.header.slip import stated_rotation
 from tribolab.reading.unknown.header.stroke_settings import Strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import Understood
+from tribolab.units.conversion import conversion
+from tribolab.units.quantities import unit_conversion
 
 _ANOTHER_SPEED = re.compile(
     r"\b(?:max\w*|min(?:imum|imal)\w*|limit\w*|return\w*|approach\w*|feed\w*|rück\w*|retour\w*|idle\w*"
@@ -103,7 +109,10 @@ def _asked(speed: SpeedBy, value: Amount, about: str) -> SpeedBy:
     its = key_pattern("own_speed").search(value.key) and not _ANOTHER_SPEED.search(value.text)
     if value.source == "step" or its:
         return speed
-    return speed._replace(guess=f"'{value.text}' {about}", options=("not known",))
+    told = value.text
+    if value.source == "file name" and (match := re.search(value.pattern, told)):
+        told = match[0].strip("_.")
+    return speed._replace(guess=f"'{told}' {about}", options=("not known",))
 
 
 def _by_strokes(
@@ -123,11 +132,32 @@ def _by_strokes(
     said = _said_of_drive(layout, strokes)
     if not drive and any(part_pattern("even_speed").search(text) for text in said):
         drive = "constant speed"
+    elif not drive and _rows_are_means(understood, strokes):
+        drive = "constant speed"
     elif not drive and not any(part_pattern("sine").search(text) for text in said):
         guesses.insert(0, "a crank drives it: the speed is a sine")
         options = ("constant speed",)
     settings = (*strokes.settings, ("drive", drive or "crank"))
     return result._replace(speed=SpeedBy("stroke", settings, "; ".join(guesses), options))
+
+
+def _rows_are_means(understood: Understood, strokes: Strokes) -> bool:
+    """Whether rows come too seldom to show a stroke: the mean of its speed is the same for all.
+
+    File: Phoenix TE 77 (Compend 2000), a row of means every few seconds.
+    """
+    clock = next((c for c in understood.columns if c.used and c.quantity == "time"), None)
+    if clock is None or len(understood.numbers) < 2:
+        return False
+    scale = unit_conversion(clock.read_unit or "s", "time")[0]
+    interval = scale * np.nanmedian(np.diff(understood.numbers[:, clock.place - 1]))
+    often = [value.si("Hz") for value in strokes.values if value.is_in("Hz")]
+    for symbol, column in strokes.symbols:
+        unit = column.file_unit or column.unit
+        if symbol == "stroke_frequency" and unit is not None and converts(unit, "Hz"):
+            values = understood.numbers[:, column.place - 1] * conversion(unit, "Hz")[0]
+            often.append(float(np.nanmedian(values)))
+    return len(often) == 1 and interval * often[0] > 1 / DENSEST
 
 
 def _said_of_drive(layout: Layout, strokes: Strokes) -> list[str]:

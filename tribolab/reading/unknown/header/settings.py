@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
-from tribolab.reading.interpret.file_names import amounts_of_name
+from tribolab.reading.interpret.file_names import amounts_of_name, speed_of_name
 from tribolab.reading.interpret.settings import amounts_of, texts_of
 from tribolab.reading.unknown.layout.text_layout import Layout
 
@@ -36,6 +36,8 @@ def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
             number += 1
             name = f"{amount.name}_{number}"
         found.setdefault(name, amount._replace(name=name))
+    if (speed := speed_of_name(layout.file.path.name)) is not None:
+        found.setdefault("set_speed", speed)
     return Amounts(_of_steps(amount, layout) for amount in found.values())
 
 

@@ -160,6 +160,7 @@ def _laid_out(file: File, columns: Sequence[HeldColumn], text: str, rows: int) -
         repeats=False,
         step=None,
         end=None,
+        skipped=None,
         whole=True,
         notes=(),
         guesses=(),

@@ -7,6 +7,7 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from tribolab.reading.dialect.delimited.headers import counts_its_rows
 from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.reading.lexicon.lexicon import alternatives, known_words
 from tribolab.units.spellings import MICRO
@@ -81,7 +82,8 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
             break  # a column is named right above its numbers
         if lines[index].strip():
             above.append(index)
-    split = {index: _cells(lines[index], grammar, width) for index in above[:3]}
+    counted = counts_its_rows(lines[start : start + 2], grammar.delimiter)
+    split = {index: _cells(lines[index], grammar, width, counted) for index in above[:3]}
     fitting = {
         i: c
         for i, c in split.items()
@@ -110,9 +112,14 @@ def first_cells(line: str, delimiter: str) -> str:
     return delimiter.join(cells[:2]) + (delimiter if len(cells) > 2 else "")
 
 
-def _cells(line: str, grammar: Grammar, width: int) -> tuple[tuple[str, ...], bool]:
-    """Cells of a header, and whether the reader will find the same ones."""
+def _cells(line: str, grammar: Grammar, width: int, counted: bool) -> tuple[tuple[str, ...], bool]:
+    """Cells of a header, and whether the reader will find the same ones.
+
+    The number that each row is `counted` by has no name of its own.
+    """
     cells = tuple(grammar.cells(line))
+    if counted and len(cells) == width - 1 and not any(map(grammar.is_number, cells)):
+        return ("", *cells), True
     if grammar.delimiter != "whitespace" or len(cells) == width:
         return cells, True
     bare = line.strip().lstrip("#%/*;!\"' ").strip()

@@ -5,6 +5,7 @@ Only the first megabyte is looked at line by line, and the end of a longer file 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -12,6 +13,9 @@ import numpy as np
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
+from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.unit_texts import is_unit
+from tribolab.reading.numbers import numbers_in
 from tribolab.reading.raw import limits
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import HEAD, File
@@ -37,7 +41,7 @@ from tribolab.reading.unknown.layout.patterns import (
     last_lines,
     step_pattern,
 )
-from tribolab.reading.unknown.layout.step_marks import Block
+from tribolab.reading.unknown.layout.step_marks import STEP_WORD, Block
 
 _FEW = 20  # lines at the end that tell what parts cells
 _CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
@@ -83,6 +87,7 @@ class Layout(NamedTuple):
     repeats: bool
     step: str | None
     end: str | None
+    skipped: str | None
     whole: bool
     notes: tuple[str, ...]
     guesses: tuple[str, ...]
@@ -196,6 +201,7 @@ def find_layout(file: File) -> Layout:
         )
     blocks = find_blocks(lines, grammar)
     main, others = main_blocks(blocks)
+    main, skipped = _with_rows_that_go_on(lines, blocks, main, grammar)
     first = main[0]
     guesses += _rows_that_may_belong(lines, blocks, main, grammar)
     rows = sum(len(block.rows) for block in main)
@@ -236,6 +242,7 @@ def find_layout(file: File) -> Layout:
         repeats=repeats,
         step=step_pattern(lines, main) if repeats else None,
         end=end,
+        skipped=skipped,
         whole=file.size <= HEAD,
         notes=tuple(notes),
         guesses=tuple(guesses),
@@ -245,11 +252,53 @@ def find_layout(file: File) -> Layout:
     )
 
 
+def _with_rows_that_go_on(
+    lines: Sequence[str], blocks: Sequence[Block], main: list[Block], grammar: Grammar
+) -> tuple[list[Block], str | None]:
+    """Add to one table the rows below events, and return the pattern of the events' lines.
+
+    Its first numbers rise on as a clock does. An event that states an amount or begins a step
+    may change what the rows are. File: Phoenix TE 77 (Compend 2000), "Fast data in ..." between
+    rows.
+    """
+    if len(main) != 1:
+        return main, None
+    place = next(n for n, block in enumerate(blocks) if block == main[0])
+    rows, events = list(main[0].rows), []
+    for block in blocks[place + 1 :]:
+        between = [x.strip() for x in lines[rows[-1] + 1 : block.start] if x.strip()]
+        if block.heading is not None or block.width != main[0].width or not between:
+            break
+        if any(not x[0].isalpha() or _SETS.search(x) or _amounts(x) for x in between):
+            break
+        rows += block.rows
+        events += between
+    clock = [_first_number(lines[index], grammar) for index in rows]
+    if not events or not (np.diff(clock) > 0).all():
+        return main, None
+    words = sorted({_FIRST_WORDS.match(event)[0] for event in events})  # type: ignore[index]
+    pattern = f"^(?:{'|'.join(map(escaped, words))})"
+    return [main[0]._replace(stop=rows[-1] + 1, rows=tuple(rows))], pattern
+
+
+_SETS = re.compile(rf"{STEP_WORD}\D{{0,5}}\d", re.IGNORECASE)
+_FIRST_WORDS = re.compile(r"[^\d=:]*")
+
+
+def _amounts(line: str) -> bool:
+    return any(is_unit(number.unit) for number in numbers_in(line[:200]) if number.unit)
+
+
+def _first_number(line: str, grammar: Grammar) -> float:
+    cells = (c for c in grammar.cells(line) if grammar.is_number(c))
+    return float(next(cells, "nan").replace(grammar.decimal, "."))
+
+
 def _rows_that_may_belong(
     lines: Sequence[str], blocks: Sequence[Block], main: Sequence[Block], grammar: Grammar
 ) -> list[str]:
     """Say of rows below a line of text that they are not read: the table may go on there."""
-    chosen = next(n for n, block in enumerate(blocks) if block == main[-1])
+    chosen = next(n for n, block in enumerate(blocks) if block.stop >= main[-1].stop)
     later = blocks[chosen + 1 :]
     alike = (b for b in later if b.heading is None and b.width == main[-1].width)
     rows = sum(len(b.rows) for b in alike if not grammar.is_footer(lines[b.start]))

@@ -195,6 +195,7 @@ def _text(layout: Layout, understood: Understood) -> Mapping[str, Any]:
         "thousands": layout.thousands,
         "missing": understood.missing,
         "end": layout.end or None,
+        "skip_lines": layout.skipped,
     }
 
 

@@ -21,6 +21,7 @@ from tribolab.units.quantities import quantity
 _REMOVE = "then remove the '#' below"
 _RATE = ['source = "rate"', 'rate = "? Hz"']
 _RADIUS = ['source = "rotation"', 'radius = "? mm"']
+_CRANK = ['source = "stroke"', 'stroke = "? mm"', 'frequency = "? Hz"']
 _ON_REPEAT = {
     "drop": "rows that repeat the one before are left out",
     "interpolate": "guessed: rows that are not later get times between",
@@ -116,6 +117,9 @@ def _rotation(described: Described) -> tuple[str, ...]:
         return ('# "position" or "column", once that column (below) has its unit',)
     if "rotation_speed" not in names:
         return ()
+    if "crank" in described.follows.facts:
+        about = "the stroke of the crank, and how often it turns"
+        return (f"# {FILL_IN}: {about}", *commented(_CRANK))
     about = "the radius of the track, if the disc's rotation tells the speed"
     return (f"# {FILL_IN}: {about}", *commented(_RADIUS))
 
