@@ -40,6 +40,11 @@ def cases():
             yield f"{size} SD, c {c}", 0, lambda t, r, s=size, c=c: s * np.exp(-t / c)
     yield "5 SD, c .1, memory T/100", 0.01, lambda t, r: 5 * np.exp(-t / 0.1)
     yield "5 SD, c .6", 0, lambda t, r: 5 * np.exp(-t / 0.6)
+    yield (
+        "rise 5 SD, c .02, fall 5 SD, c .1",
+        0,
+        lambda t, r: 5 * np.exp(-t / 0.1) - 8 * np.exp(-t / 0.02),
+    )
     yield "power law", 0, lambda t, r: 5 / (1 + t / 0.03)
     yield (
         "5 SD, c .05, then rise 5 SD at .85",

@@ -124,4 +124,16 @@ def test_one_of_three_repeats_that_is_off_is_named_and_sound_ones_are_not():
     worst = odd_repeats(groups)[0]
     assert (worst.condition, worst.repeat, worst.odd) == (5, 1, True)
     assert worst.deviation == pytest.approx(np.expm1(0.25), abs=0.05)
-    assert odd_repeats(groups[5:6]) == []
+    assert odd_repeats(groups[5:6]) == []  # two others hardly show their scatter
+
+
+@pytest.mark.parametrize("repeats", [3, 4, 6])
+def test_with_one_condition_an_odd_repeat_is_told_by_the_scatter_of_the_others(repeats):
+    rng = np.random.default_rng(7)
+    sound = [0.01 * rng.standard_normal(repeats) for _ in range(4000)]
+    alarms = sum(bool(odd_repeats([values])) for values in sound)
+    assert alarms < 0.015 * len(sound)  # one campaign in a hundred
+    four = np.array([0.0, 0.001, -0.001, 0.0005])
+    (odd,) = odd_repeats([np.append(four, np.log(1.3))])
+    assert (odd.condition, odd.repeat) == (0, 4)
+    assert odd.deviation == pytest.approx(0.3, abs=0.01)

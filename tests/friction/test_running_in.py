@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.signal import lfilter
 
 import tribolab as tl
-from tribolab.app.running_in_table import running_in_table
+from tribolab.app.answer_tables import running_in_table
 from tribolab.campaign.runs.running_in import running_in_of
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.mean_error.level import levels_of
@@ -142,6 +142,16 @@ def pin_on_disc(settles=45.0):
     data = {"friction_force": 10 * mu, "normal_force": np.full(time.size, 10.0)}
     data |= {"set_speed": np.full(time.size, 0.1), "height_displacement": 1e-8 * time}
     return xr.Dataset({name: ("time", values) for name, values in data.items()}, {"time": time})
+
+
+def test_friction_that_first_rises_runs_in_after_its_peak():
+    rng = np.random.default_rng(11)
+    t = np.arange(2000) / 2000
+    course = 0.55 + 0.25 * np.exp(-t / 0.13) - 0.3 * np.exp(-t / 0.027)
+    found = settling_of(course + 0.003 * rng.standard_normal(t.size))
+    assert found.kind == "running-in" and found.stop == t.size
+    assert abs(course[found.start] / 0.55 - 1) < 0.012  # one per cent from the steady value
+    assert 0.3 < found.start / t.size < 0.55
 
 
 def test_a_pin_on_disc_runs_in_over_a_distance():

@@ -147,7 +147,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
         runs = [run for run in outcome.runs if run.quality == quality]
         # read only the records that are named
-        names = [f"{run.name}{_reasons_of_run(run, outcome)}" for run in runs[:_HANDFUL]]
+        names = _alike((run.name, _reasons_of_run(run, outcome)) for run in runs[:_HANDFUL])
         names += [run.name for run in runs[_HANDFUL:]]
         for surface in outcome.surfaces:
             if quality in surface.objections:
@@ -189,13 +189,13 @@ def where_to_look(outcome: Outcome) -> list[str]:
 def _run_notices(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
     """Return notices on a few runs, e.g. on trimmed strokes, running-in and wear."""
     few = done if len(done) <= _HANDFUL else ()
-    return [
-        f"{run.name}: {'left out: ' * (notice.where == STROKE_ENDS)}{notice.message}"
+    return _alike(
+        (run.name, f": {'left out: ' * (notice.where == STROKE_ENDS)}{notice.message}")
         for run in few
         if (entry := outcome.store.get("run", run.name, RunRecord)) is not None
         for notice in entry.record.notices
         if notice.where in (*CHANGES, STROKE_ENDS, DOUBTFUL_COLUMNS, STICK_SLIP)
-    ]
+    )
 
 
 def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
@@ -205,6 +205,8 @@ def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 
     entries = [(run.name, outcome.store.get("run", run.name, RunRecord)) for run in done]
     facts = [(name, entry.record.facts) for name, entry in entries if entry is not None]
+    # a run whose friction changes along it has a notice of its own
+    facts = [(name, each) for name, each in facts if not any(r.changes for r in each.running_in)]
     text = undecided_trends((name, each.segments, each.quantity or "") for name, each in facts)
     return [text] if text else []
 
@@ -232,6 +234,14 @@ def _decisions(outcome: Outcome) -> list[str]:
     return [
         f"decided by hand: {said}: see {from_here(outcome.folder / 'tables' / 'decisions.csv')}"
     ]
+
+
+def _alike(reasons: Iterable[tuple[str, str]]) -> list[str]:
+    """Return names with their reasons, and once each reason that several have in common."""
+    named: dict[str, list[str]] = {}
+    for name, reason in reasons:
+        named.setdefault(reason, []).append(name)
+    return [f"{', '.join(names)}{reason}" for reason, names in named.items()]
 
 
 def _reasons_of_run(run: RunOutcome, outcome: Outcome) -> str:
@@ -326,7 +336,7 @@ def failure_lines(outcome: Outcome) -> list[str]:
     from tribolab.records.models.mode_record import condition
 
     failed = list(outcome.lost_decisions)
-    failed += [f"{run.name} failed: {run.reason}" for run in outcome.failed]
+    failed += _alike((run.name, f" failed: {run.reason}") for run in outcome.failed)
     for surface in outcome.surfaces:
         failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
     failed += [f"{run.name}: {run.kept}" for run in outcome.runs if run.kept]

@@ -62,11 +62,17 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
     from tribolab.friction.points.odd_repeats import odd_repeats
 
     said: dict[str, CheckRow] = {}
-    alone = len(conditions) == 1
+    alone = len(conditions) == 1 and len(conditions[0].runs) < 3
+    sound = (
+        "agrees with its repeats as well as they agree with each other"
+        if len(conditions) == 1
+        else "agrees with its repeats as well as repeats under other conditions do"
+    )
     for condition in conditions:
         for name in condition.runs:
-            text = "only one condition was repeated: how well runs repeat is not known elsewhere"
-            sound = "agrees with its repeats as well as repeats under other conditions do"
+            text = (
+                "only one condition was repeated, and only twice: how well runs repeat is unknown"
+            )
             said[name] = _row("skipped", text) if alone else _row("pass", sound)
     for odd in odd_repeats([np.log(condition.levels) for condition in conditions]):
         runs = conditions[odd.condition].runs

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tribolab.core.limit import Limit
 from tribolab.core.wording import many
+from tribolab.friction.segments.limits import RAMP_SHARE
 
 if TYPE_CHECKING:
     from tribolab.records.parts import RunOutcome, SurfaceOutcome
 
 OK, SUSPECT, CHECK, FAIL = "OK", "SUSPECT", "CHECK", "FAIL"
 _BAD = ("fail", "error", "rejected")
-RAMP_SHARE = Limit(
-    0.8, "1", "share of a record with rising or falling speed: it is a test by ramps", "judgement"
-)
 
 
 class Verdict(NamedTuple):

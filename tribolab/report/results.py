@@ -16,6 +16,7 @@ from tribolab.figures.spec import FigureSpec
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Notice
 from tribolab.records.runs.run_record import RunRecord
+from tribolab.records.runs.starts import starts_of
 from tribolab.report.campaign_tables import write_checks, write_tables
 from tribolab.report.document.decisions import curve_notices
 from tribolab.report.document.document import brief_run, report_document, report_head, write_json
@@ -44,7 +45,7 @@ from tribolab.report.live.gather import Subject, begun_live_figures, figure_subj
 from tribolab.report.live.loads import over_load_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.live.shown import shown_figures
-from tribolab.report.live.starts import starts_of, static_figures
+from tribolab.report.live.starts import static_figures
 from tribolab.report.live.traction import traction_figures
 from tribolab.report.page.page import prepare_page, write_page
 from tribolab.report.page.reviewing import review_data

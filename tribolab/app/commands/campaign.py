@@ -310,19 +310,18 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     """Print the outcome of a campaign, with tracebacks of crashes if `debug`; return exit code."""
     # imported late for a quick start
     from tribolab.app import terminal
+    from tribolab.app.answer_tables import answer_table
     from tribolab.app.console import console
-    from tribolab.app.running_in_table import running_in_table
     from tribolab.qc.findings import exit_code
 
     say(terminal.verdict_line(outcome))
     table = terminal.outcome_table(outcome)
     if table.row_count:
         console().print(table)
-    for more in (running_in_table(outcome), terminal.points_table(outcome)):
-        if more is not None:
-            console().print()
-            console().print(more)
-            break
+    more = answer_table(outcome) or terminal.points_table(outcome)
+    if more is not None:
+        console().print()
+        console().print(more)
     for line in terminal.outcome_lines(outcome):
         say(line)
     for line in terminal.where_to_look(outcome):

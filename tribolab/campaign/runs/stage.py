@@ -206,6 +206,7 @@ def process_run(task: RunTask) -> RunAnswer:
     from tribolab.records.runs.decision_rows import unapplied_decisions
     from tribolab.records.runs.notices import notices_of
     from tribolab.records.runs.run_facts import facts_of
+    from tribolab.records.runs.starts import starts_after_rests
 
     began = time.monotonic()
     run = task.run
@@ -224,12 +225,14 @@ def process_run(task: RunTask) -> RunAnswer:
         running_in, course = running_in_of(
             signals, friction if analysed.whole is None else analysed.whole
         )
+        starts = _starts(signals, segments, friction)
+        if starts_after_rests(starts):  # each start has its own transient: the run does not run in
+            running_in = ()
         facts = replace(facts, running_in=running_in)
         told = facts.decisions, slip, running_in
         notices = notices_of(run.name, signals, segments, friction, *told)
         trace, why = _trace(task, signals, segments, friction)
         rows = plain_rows(stick_slip_columns(slip))
-        starts = _starts(signals, segments, friction)
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad file must not stop the others

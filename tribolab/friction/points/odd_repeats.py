@@ -5,7 +5,12 @@ Notes
 The repeatability is that of the other conditions, from the squared contrasts of their repeats
 without the largest fifth. The largest deviation by chance is found by simulating campaigns with the
 same numbers of conditions and repeats, whose scatter differs between conditions. If only two
-repeats differ, the outlier cannot be identified.
+repeats differ, the outlier cannot be identified. With a single condition, each of at least three
+repeats is compared with the scatter of the others by Grubbs' test [1]_.
+
+References
+----------
+.. [1] Grubbs (1950), Ann. Math. Stat. 21, 27. doi:10.1214/aoms/1177729885
 """
 
 from __future__ import annotations
@@ -90,8 +95,7 @@ def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
     ----------
     groups
         Logarithms of the repeated quantity for each condition (repeat): for runs the mean of
-        ln(friction) over their common speeds, for scans ln(Rq). At least two conditions are needed
-        for a comparison.
+        ln(friction) over their common speeds, for scans ln(Rq).
 
     Returns
     -------
@@ -108,6 +112,8 @@ def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
     [(4, -1, 0.17)]
     """
     left = [k for k, values in enumerate(groups) if values.size > 1]
+    if len(left) == 1:
+        return _odd_of_one(left[0], groups[left[0]])
     found = []
     while len(left) > 1:
         own = [groups[k] for k in left]
@@ -129,3 +135,22 @@ def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
         )
         del left[worst]
     return found
+
+
+def _odd_of_one(condition: int, values: np.ndarray) -> list[OddRepeat]:
+    """Return the outlier among the repeats of the only condition, if any."""
+    # imported late for a quick start
+    from scipy import special
+
+    count = values.size
+    if count < 3:
+        return []
+    repeat = int(np.abs(values - values.mean()).argmax())
+    others = np.delete(values, repeat)
+    scatter = float(others.std(ddof=1))
+    deviation = float(values[repeat] - others.mean())
+    error = max(scatter * np.sqrt(1 + 1 / others.size), 1e-12)
+    chance = 2 * count * special.stdtr(count - 2, -abs(deviation) / error)
+    if not chance < limits.ODD_BY_CHANCE.value:
+        return []
+    return [OddRepeat(condition, repeat, float(np.expm1(deviation)), scatter, True)]

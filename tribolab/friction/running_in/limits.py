@@ -1,6 +1,6 @@
 """Limits for running-in, calibrated by ``tests/benchmarks/running_in_coverage.py``."""
 
-from tribolab.core.limit import Limit
+from tribolab.core.limit import Count, Limit
 
 _TABLE = "tests/benchmarks/running_in_coverage.py, seed 8"
 
@@ -23,6 +23,10 @@ SHORT_TIME = Limit(
 LONGEST_CHANGE_AT_END = Limit(
     1 / 3, "1", "share of a run that a change at its end may take: else the end is the steady part"
 )
+LATEST_PEAK = Limit(
+    1 / 3, "1", "share of the run within which friction may first rise, before it runs in", _TABLE
+)
+BLOCKS_FOR_PEAK = Count(50, "1", "intervals among which the extreme is looked for", _TABLE)
 MIN_VALUES = Limit(20, "1", "strokes, or stretches, of a run in which running-in is looked for")
 """As for the trend along a run's strokes; with fewer values Burg's models are unreliable."""
 MIN_TIME_AT_ONE_SPEED = Limit(

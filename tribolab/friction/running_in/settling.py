@@ -92,9 +92,23 @@ def settling_of(values: np.ndarray) -> Settling:
     found = _settling(values[:stop])
     if found.kind == STEP and found.start > stop / 2:  # the longer part is the steady one
         return found._replace(kind=STEP, start=0, stop=found.start)
-    if found.stop == found.start:
-        return found._replace(start=size, stop=size)
+    if not found.is_steady:
+        found = _after_peak(values[:stop]) or found._replace(start=size, stop=size)
     return found
+
+
+def _after_peak(values: np.ndarray) -> Settling | None:
+    """Return the running-in after an early extreme, as of friction that first rises; else None."""
+    blocks = blocks_of(values, int(limits.BLOCKS_FOR_PEAK.value))
+    level = blocks[-(blocks.size // 3) :].mean()
+    peak = int(np.abs(blocks - level).argmax()) / blocks.size
+    if not 0 < peak <= limits.LATEST_PEAK.value:
+        return None
+    first = int(peak * values.size)
+    found = _settling(values[first:])
+    if found.kind != RUN_IN:
+        return None
+    return found._replace(start=first + found.start, stop=first + found.stop)
 
 
 class _Fit(NamedTuple):

@@ -219,10 +219,8 @@ def why_no_segment(segments: xr.Dataset) -> str:
     """
     if segments.sizes["segment"]:
         return ""
-    start, stop = segments["omitted_start"].values, segments["omitted_stop"].values
-    reason = segments["omitted_reason"].values.astype(str)
-    whole = float((stop - start).sum())
-    lasted = {why: float((stop - start)[reason == why].sum()) for why in dict.fromkeys(reason)}
+    lasted = _omitted_times(segments)
+    whole = sum(lasted.values())
     shares = [
         f"{why} {lasted[why] / whole:.0%}".replace("%", " %")
         for why in sorted(lasted, key=lambda why: -lasted[why])
@@ -230,6 +228,27 @@ def why_no_segment(segments: xr.Dataset) -> str:
     ]
     detail = f" ({', '.join(shares)} of the time)" if shares else ""
     return f"no segment: the run never slides at constant speed{detail}"
+
+
+def consists_of_ramps(segments: xr.Dataset) -> bool:
+    """Return whether the speed of a run rises or falls for most of it, so that it has no segment.
+
+    Parameters
+    ----------
+    segments
+        From `find_segments`.
+    """
+    if segments.sizes["segment"]:
+        return False
+    lasted = _omitted_times(segments)
+    return lasted.get("ramp", 0.0) > limits.RAMP_SHARE.value * sum(lasted.values())
+
+
+def _omitted_times(segments: xr.Dataset) -> dict[str, float]:
+    """Return the time omitted for each reason [s]."""
+    lasted = segments["omitted_stop"].values - segments["omitted_start"].values
+    reason = segments["omitted_reason"].values.astype(str)
+    return {why: float(lasted[reason == why].sum()) for why in dict.fromkeys(reason)}
 
 
 def _mark_ramp(run: xr.Dataset, stretch: Stretch) -> Stretch:

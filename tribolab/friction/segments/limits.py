@@ -211,3 +211,6 @@ MIN_COVERED_STROKE = Limit(
 MIN_STROKE_OVER_NOISE = Limit(
     20.0, "1", "length of a stroke over the noise of a position reading", _STROKES
 )
+RAMP_SHARE = Limit(
+    0.8, "1", "share of a record with rising or falling speed: it is a test by ramps", "judgement"
+)

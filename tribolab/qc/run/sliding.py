@@ -97,6 +97,13 @@ def _add_largest_change(results: list[Result], change: np.ndarray) -> list[Resul
 def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     _ = subject.required_friction_signal  # without a segment, the check `schema` objects
     why = subject.missing_segment_reason
+    if why and subject.is_ramp:
+        text = "a test by ramps: friction over speed includes the zero of the friction force"
+        cure = (
+            "Record a rest without load, or ramps in both directions, for the zero. For intervals "
+            "of constant speed see `drift` in [segments]."
+        )
+        return [Result("suspect", "", text, cure=cure)]
     if why:
         return [Result("suspect", "", why)]
     number = subject.segments.sizes["segment"]

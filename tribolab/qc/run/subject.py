@@ -18,7 +18,7 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.oscillation.spectrum.lines import Line, segment_lines
 from tribolab.friction.oscillation.spectrum.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
-from tribolab.friction.segments.find import find_segments, why_no_segment
+from tribolab.friction.segments.find import consists_of_ramps, find_segments, why_no_segment
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
 
@@ -86,6 +86,12 @@ class RunSubject:
         if isinstance(self._segments_or_skip, Skip):
             raise self._segments_or_skip  # the speed is unknown: the check `schema` objects
         return why_no_segment(self._segments_or_skip)
+
+    @property
+    def is_ramp(self) -> bool:
+        """Whether the speed rises or falls all the time."""
+        found = self._segments_or_skip
+        return not isinstance(found, Skip) and consists_of_ramps(found)
 
     @property
     def segments(self) -> xr.Dataset:

@@ -67,6 +67,11 @@ class RunningIn:
         return self.verdict == NOT_FINISHED
 
     @property
+    def error_of_mean(self) -> float | None:
+        """Return U95 of the mean over the whole run; None if the mean depends on its length."""
+        return None if self.changes else self.mean_friction_coefficient_U95
+
+    @property
     def changes(self) -> bool:
         """Whether friction changes significantly along the run."""
         return self._moves(self.first_friction_coefficient) or self._changes_at_end

@@ -7,21 +7,9 @@ from collections.abc import Sequence
 from tribolab.core.wording import many
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
 from tribolab.friction.statistics import NORMAL
-from tribolab.records.parts import BAD, Row, number_of
+from tribolab.records.parts import number_of
 from tribolab.records.runs.run_record import RunRecord
-
-_MIN_TIMES = 3  # smallest number of distinct rest times: fewer occur between ordinary strokes
-_MIN_RATIO = 1.5  # smallest ratio of distinct rest times
-
-
-def starts_of(record: RunRecord) -> tuple[Row, ...]:
-    """Return the starts of a run after rests of different lengths; empty for other tests."""
-    rows = [row for row in record.starts if (number_of(row, "waiting_time_s") or 0) > 0]
-    times: list[float] = []
-    for time in sorted(number_of(row, "waiting_time_s") or 0.0 for row in rows):
-        if not times or time > _MIN_RATIO * times[-1]:
-            times.append(time)
-    return tuple(rows) if len(times) >= _MIN_TIMES and record.outcome.quality not in BAD else ()
+from tribolab.records.runs.starts import starts_of
 
 
 def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from typing import Any, NamedTuple
 
 from tribolab.core.wording import load_text
 from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
-from tribolab.records.runs.running_in_record import length_text
+from tribolab.records.runs.running_in_record import RunningIn, length_text
 from tribolab.records.surfaces.roughness_words import roughness_u95
 from tribolab.records.wording import NORMAL, error_text
 from tribolab.report.live.curves import system_name
@@ -120,6 +121,9 @@ _MEANS = ("steady", "mean")
 
 
 def _mean(settled: Mapping[str, Any], name: str) -> str:
+    if name == "mean":  # of friction that changes it depends on the length of the run
+        row = RunningIn(**{field.name: settled[field.name] for field in fields(RunningIn)})
+        return error_text(row.mean_friction_coefficient, row.error_of_mean)
     name = f"{name}_friction_coefficient"
     return error_text(settled[name], settled[f"{name}_U95"])
 
