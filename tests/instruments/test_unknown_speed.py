@@ -194,4 +194,6 @@ def test_every_objection_is_printed_with_its_reason_and_at_most_a_handful(togeth
     many = replace(together, runs=4 * together.runs)
     lines = [line for line in terminal.outcome_lines(many) if "suspect" in line]
     assert len(lines) == 6
-    assert "and 7 more: see " in lines[-1] and lines[-1].endswith("checks.csv")
+    first, second, *_ = (run.name for run in together.runs)
+    assert f"in: {first}, {first}: " in lines[0] and f"in: {second}, {second}: " in lines[1]
+    assert "and 5 more: see " in lines[-1] and lines[-1].endswith("checks.csv")

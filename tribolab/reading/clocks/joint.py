@@ -27,6 +27,7 @@ from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import SLACK_LENGTHS, Basis
 
 _FITTED_SAMPLES = 2000  # force samples used in one fit
+_ROUNDING = 1e-14  # error of a difference of products, over the products
 _CANCELLATION = 1e-6  # relative size below which a difference of sums is computed directly
 _DRIFT_FUNCTIONS = 8  # most hat functions of time
 _POWER_RANGE = 2.0, 8.0  # range of the exponent that weights models by their unexplained share
@@ -299,17 +300,20 @@ class _Fit:
 
     def squares(self) -> tuple[Array, Array, Array]:
         """Return residual sums of squares, amplitudes, and shares of inertia (shift)."""
-        normals, told = [], []
+        normals, told, whole = [], [], []
         for shift in self.shifts:
             columns = self.columns(shift)
             # removing the drift from the products is faster than from the columns
             along = self.samples.both @ columns
-            normals.append(columns.T @ columns - along[:-1].T @ along[:-1])
+            products = columns.T @ columns
+            whole.append(products.diagonal())
+            normals.append(products - along[:-1].T @ along[:-1])
             told.append(along[-1])
         normal, right = np.stack(normals), np.stack(told)[:, :, None]
         own = np.einsum("sii->si", normal)
         ridge = _RIDGE_PENALTY * own + 1e-12 * own.sum(axis=1, keepdims=True)
-        ridge = np.maximum(ridge, np.finfo(float).tiny)  # for motion that explains nothing
+        # what is left of motion that the drift explains is rounding
+        ridge = np.maximum(ridge, _ROUNDING * np.stack(whole) + np.finfo(float).tiny)
         ridged = normal + ridge[:, :, None] * np.eye(own.shape[1])
         amplitudes = np.linalg.solve(ridged, right)
         explained = amplitudes * (2.0 * right - normal @ amplitudes)
