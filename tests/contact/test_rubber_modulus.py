@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from tribolab import cli
 from tribolab.core.errors import AnalysisError, ReadError
-from tribolab.reading.moduli import holds_modulus, read_modulus_table
+from tribolab.reading.moduli import is_modulus_file, read_modulus_table
 from tribolab.rubber.modulus import (
     PDMS_STAND_IN,
     FractionalZener,
@@ -289,7 +289,7 @@ def test_a_file_that_cannot_be_opened_costs_one_message(tmp_path, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("pathlib.Path.open", closed)
-    assert not holds_modulus(path)
+    assert not is_modulus_file(path)
     with pytest.raises(ReadError, match="sweep.txt.*cannot be opened.*Permission denied"):
         read_modulus_table(path)
 

@@ -42,7 +42,7 @@ def test_of_nothing_and_of_gaps_there_is_no_median():
 def test_the_median_of_a_long_record_is_found_by_what_lies_about_it(monkeypatch, digits, gaps):
     numbers = _numbers(300_001, digits, gaps)
     whole = np.nanmedian(numbers)
-    monkeypatch.setattr(medians, "_MANY", 1000)
+    monkeypatch.setattr(medians, "_MAX_SORTED", 1000)
     kept = []
 
     def part(first: int, last: int) -> np.ndarray:
@@ -57,7 +57,7 @@ def test_the_median_of_a_long_record_is_found_by_what_lies_about_it(monkeypatch,
 @pytest.mark.parametrize("size", [1, 2, 5, 300_001])
 @pytest.mark.parametrize("share", [0.0, 0.02, 0.95, 0.991, 1.0])
 def test_a_quantile_of_a_long_record_is_that_of_numpy(monkeypatch, size, share):
-    monkeypatch.setattr(medians, "_MANY", 1000)
+    monkeypatch.setattr(medians, "_MAX_SORTED", 1000)
     numbers = np.append(_numbers(size, None, 0.2), 7.0)
     found = quantile_in_pieces(lambda a, b: numbers[a:b], numbers.size, share)
     assert found == np.nanquantile(numbers, share)
@@ -68,7 +68,7 @@ def test_of_nothing_there_is_no_quantile():
 
 
 def test_a_record_whose_short_stretches_deceive_is_sorted_as_a_whole(monkeypatch):
-    monkeypatch.setattr(medians, "_MANY", 1000)
+    monkeypatch.setattr(medians, "_MAX_SORTED", 1000)
     # all that is tried is small, all that lies between is large
     numbers = np.full(300_000, 5.0) + np.arange(300_000) * 1e-9
     for start in np.linspace(0, numbers.size - medians._SHORT, medians._STRETCHES).astype(int):

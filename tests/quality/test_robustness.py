@@ -25,7 +25,7 @@ from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.netcdf import seal
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.reading.raw.containers.mat import read_variables
-from tribolab.reading.raw.opening import damage_told
+from tribolab.reading.raw.opening import report_damage
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.results import read_tester_results
 from tribolab.reading.unknown.proposal.draft import draft_dialect
@@ -439,10 +439,10 @@ def test_an_old_workbook_that_is_damaged_is_refused(shared_data, tmp_path, case)
 def test_a_panic_of_a_library_is_a_read_error(tmp_path):
     PanicException = type("PanicException", (BaseException,), {})  # noqa: N806, as it is called
     with pytest.raises(ReadError, match=r"a\.xlsx: this workbook cannot be read: .*slice"):
-        with damage_told(tmp_path / "a.xlsx", "workbook"):
+        with report_damage(tmp_path / "a.xlsx", "workbook"):
             raise PanicException("slice index starts at 5")
     with pytest.raises(KeyboardInterrupt):
-        with damage_told(tmp_path / "a.xlsx", "workbook"):
+        with report_damage(tmp_path / "a.xlsx", "workbook"):
             raise KeyboardInterrupt
 
 

@@ -61,7 +61,7 @@ def test_a_group_that_is_not_there_is_told_with_those_that_are(file):
 
 
 def test_no_more_is_kept_than_a_process_can_spare(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept, "_MOST", 40)
+    monkeypatch.setattr(kept, "_MAX_CACHED", 40)
     mine = kept.KeptReading()
     files = [write_groups({"short": dataset(float(k))}, tmp_path / f"{k}.nc") for k in range(10)]
     for file in files:

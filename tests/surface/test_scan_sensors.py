@@ -3,7 +3,7 @@
 import numpy as np
 
 from tribolab.reading.scan_files import read_scans
-from tribolab.reading.unknown_run import holds_run
+from tribolab.reading.unknown_run import is_run_file
 
 N = 400
 Z = np.round(np.sin(np.arange(N) / 7.0) + 0.3 * np.sin(np.arange(N) / 2.0), 3)  # um
@@ -25,7 +25,7 @@ TIME = [f"{n / 1000:.3f}" for n in range(N)]
 def test_wear_over_time_is_no_profile(tmp_path):
     text = "Profile of wear\nTime [s],Wear [um],Friction force [N]\n"
     path = written(tmp_path, text + rows(TIME, map(str, Z), map(str, Z)))
-    assert holds_run(path)
+    assert is_run_file(path)
 
 
 def test_a_sensors_map_with_x_y_and_z_is_a_map(tmp_path):

@@ -17,7 +17,7 @@ from tribolab.records.wording import NORMAL, error_text
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
 
-_MOST_ROWS = 12
+_MAX_ROWS = 12
 _NONE = "–"
 
 
@@ -37,7 +37,7 @@ def _table(*headings: str) -> Table:
 def _static_table(outcome: Outcome) -> Table | None:
     """Return static and kinetic friction after each rest, or None for other tests."""
     table = _table("run", "rest (s)", "static µ ± U95", "kinetic µ")
-    for run in outcome.runs[:_MOST_ROWS]:
+    for run in outcome.runs[:_MAX_ROWS]:
         entry = outcome.store.get("run", run.name, RunRecord)
         for row in starts_of(entry.record) if entry is not None else ():
             error = number_of(row, "static_friction_coefficient_sem")
@@ -50,7 +50,7 @@ def _static_table(outcome: Outcome) -> Table | None:
                 ),
                 error_text(number_of(row, "friction_coefficient"), None),
             )
-    return table if 0 < table.row_count <= _MOST_ROWS else None
+    return table if 0 < table.row_count <= _MAX_ROWS else None
 
 
 def _ramp_table(outcome: Outcome) -> Table | None:
@@ -60,7 +60,7 @@ def _ramp_table(outcome: Outcome) -> Table | None:
     from tribolab.report.plain import plain_speed
 
     ramps = [run for run in outcome.runs if run.ramp and run.done]
-    if not ramps or len(ramps) > _MOST_ROWS or any(run.segments for run in outcome.runs):
+    if not ramps or len(ramps) > _MAX_ROWS or any(run.segments for run in outcome.runs):
         return None
     table = _table("ramp", "speeds", "highest µ", "at", "lowest µ", "at")
     for leg in (leg for spec in ramp_specs(ramps, outcome.folder) for leg in spec.series):
@@ -80,11 +80,11 @@ def _ramp_table(outcome: Outcome) -> Table | None:
 def running_in_table(outcome: Outcome) -> Table | None:
     """Return running-in, steady and mean friction of a few runs, or None if none runs in."""
     found: list[tuple[str, RunningIn]] = []
-    for run in outcome.runs[: _MOST_ROWS + 1]:
+    for run in outcome.runs[: _MAX_ROWS + 1]:
         entry = outcome.store.get("run", run.name, RunRecord)
         settled = entry.record.facts.running_in if entry is not None else ()
         found += [(run.name, settled[0])] if len(settled) == 1 else []
-    if len(outcome.runs) > _MOST_ROWS or not any(row.changes for _, row in found):
+    if len(outcome.runs) > _MAX_ROWS or not any(row.changes for _, row in found):
         return None
     table = _table("run", "runs in over", "steady µ ± U95", "mean over all")
     for name, row in found:

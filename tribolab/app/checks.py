@@ -24,7 +24,7 @@ from tribolab.qc.run.checks import check_run
 from tribolab.reading.kinds import kind_of, repeats_by_name
 from tribolab.reading.runs.logs import group_files
 from tribolab.reading.scans.results import read_tester_results
-from tribolab.reading.unknown_run import holds_run, read_run
+from tribolab.reading.unknown_run import is_run_file, read_run
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -199,7 +199,7 @@ def _error_text(error: BaseException) -> str:
 
 def _kind_of(path: Path, instrument: str | Path | None) -> str:
     kind = kind_of(path, instrument)
-    return "run" if kind == "unknown" and holds_run(path) else kind
+    return "run" if kind == "unknown" and is_run_file(path) else kind
 
 
 def check_files(

@@ -9,14 +9,14 @@ from typing import NamedTuple
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.core.errors import TribolabError
 from tribolab.reading.kinds import kind_of
-from tribolab.reading.moduli import holds_modulus
-from tribolab.reading.unknown_run import holds_run
+from tribolab.reading.moduli import is_modulus_file
+from tribolab.reading.unknown_run import is_run_file
 
 _NO_DATA = (
     *(".toml", ".py", ".ipynb", ".md", ".rst", ".pdf", ".doc", ".docx", ".ppt", ".pptx", ".html"),
     *(".png", ".jpg", ".jpeg", ".tif", ".tiff", ".svg", ".gif", ".mp4", ".avi", ".zip", ".sqlite"),
 )
-_MOST_FILES = 5000  # most files in a folder; e.g. a whole disk is not a campaign
+_MAX_FILES = 5000  # most files in a folder; e.g. a whole disk is not a campaign
 
 
 class RawFiles(NamedTuple):
@@ -35,7 +35,7 @@ def files_in(folder: Path) -> list[Path]:
     """
     found: list[Path] = []
     for path in sorted(folder.iterdir()):
-        if path.name.startswith(".") or len(found) >= _MOST_FILES:
+        if path.name.startswith(".") or len(found) >= _MAX_FILES:
             continue
         if path.is_dir():
             found += [] if is_results_folder(path) else files_in(path)
@@ -89,9 +89,9 @@ def _kind(path: Path, instrument: str | None) -> str:
         kind = kind_of(path, instrument)
         if kind != "unknown":
             return kind
-        if holds_modulus(path):
+        if is_modulus_file(path):
             return "modulus"
-        return "run" if holds_run(path, by_name=False) else "scan"
+        return "run" if is_run_file(path, by_name=False) else "scan"
     except TribolabError:
         if instrument is not None:
             raise

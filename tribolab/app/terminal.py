@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tribolab.app.truth.known import DemoComparison
 
 _SHOWN, _HANDFUL = 10, 5
-_MOST_POINTS = 16  # most rows in a terminal
+_MAX_POINTS = 16  # most rows in a terminal
 _NONE = "–"
 _COUNTS = ("load", "runs", "segments")
 
@@ -71,7 +71,7 @@ def points_table(outcome: Outcome) -> Table | None:
         if isinstance(speed := row["sliding_speed_m_s"], float)
         and row["friction_coefficient"] is not None
     ]
-    if not 1 <= len(known) <= _MOST_POINTS:
+    if not 1 <= len(known) <= _MAX_POINTS:
         return None
     table = Table(box=None, pad_edge=False, header_style="bold")
     unit, scale = ("m/s", 1.0) if max(speed for _, speed in known) >= 1 else ("mm/s", 1e3)

@@ -13,7 +13,7 @@ import numpy as np
 
 from tribolab.arrays.chunks import pieces
 
-_MANY = 1 << 20  # samples; shorter records are sorted as a whole
+_MAX_SORTED = 1 << 20  # samples; shorter records are sorted as a whole
 _STRETCHES, _SHORT = 256, 256  # number and length of the parts of a long record that are sampled
 _AROUND = (0.05, 0.3)  # initial share of the numbers on each side of a quantile that are kept
 
@@ -109,7 +109,7 @@ class _About(NamedTuple):
 
 
 def _about(part: Callable[[int, int], np.ndarray], count: int, share: float) -> _About:
-    if count >= _MANY:
+    if count >= _MAX_SORTED:
         tried = _sample_parts(part, count)
         for around in _AROUND if tried.size else ():
             low, high = np.quantile(tried, [max(share - around, 0), min(share + around, 1)])

@@ -26,7 +26,7 @@ class _Condition(NamedTuple):
     levels: np.ndarray
 
 
-def with_odd_repeats(
+def add_odd_repeats(
     store: Store, came: Sequence[RunCame], curves: Iterable[CurveRecord], *, skip: bool = False
 ) -> list[RunCame]:
     """Mark the runs that differ from their repeats by far more than other repeats do.

@@ -12,7 +12,7 @@ from tribolab.campaign.curves import Curves
 from tribolab.campaign.engine.pool import WorkerDied
 from tribolab.campaign.engine.stage import Progress, begun, perform
 from tribolab.campaign.models.stage import Models
-from tribolab.campaign.odd_runs import REPEATS, with_odd_repeats
+from tribolab.campaign.odd_runs import REPEATS, add_odd_repeats
 from tribolab.campaign.runs.kept import keep_runs
 from tribolab.campaign.runs.repeats import share_loads
 from tribolab.campaign.runs.stage import RunCame, Runs
@@ -91,7 +91,7 @@ def process(
         Curves(came, store, campaign.segments.speed_tolerance), executor, progress
     )  # while the last surfaces are done
     surfaces, curves = surfacing(), combining()
-    came = with_odd_repeats(store, came, curves, skip=REPEATS in campaign.qc.skip)
+    came = add_odd_repeats(store, came, curves, skip=REPEATS in campaign.qc.skip)
     outcomes = tuple(run.outcome for run in came)
     models = perform(Models(campaign, curves, surfaces, store), executor, progress)
     for part in (staging / "data").glob(f"*{UNFINISHED}"):  # left by a worker that died

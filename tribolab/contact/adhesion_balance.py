@@ -29,7 +29,7 @@ from tribolab.units.conversion import positive, to_si
 _EVEN_SHARE = 0.2
 _THINNING = 4  # factor by which nodes are thinned for the first search of the root
 _NEGLIGIBLE = 1e-11  # of the elastic energy, below which adhesion is negligible
-_CLOSE = 2e-5  # relative error of a guess that needs no correction
+_CLOSE_GUESS = 2e-5  # relative error of a guess that needs no correction
 _SMALLEST_AREA = 1e-15
 _LARGEST_RESIDUAL = 1e-8
 # Below this share of E* xi/2 the limit p -> 0 is used: the theory is linear in p there, and
@@ -163,7 +163,7 @@ class Interface:
                 )
                 expected = guess
                 guess = np.maximum(before - losses[i], _SMALLEST_AREA)
-                which = np.flatnonzero(np.abs(guess - expected) > _CLOSE * guess)
+                which = np.flatnonzero(np.abs(guess - expected) > _CLOSE_GUESS * guess)
                 if not which.size:
                     break
             area[i + 1] = guess

@@ -28,7 +28,7 @@ GapVariant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications per decade
 COMPLETE = 1e-2  # cut-offs of mean separation below which the contact is complete
 _FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
-_FAR = 8.0  # rms heights from the mean beyond which a Gaussian is negligible
+_MAX_HEIGHTS = 8.0  # rms heights from the mean beyond which a Gaussian is negligible
 _NEGLIGIBLE = 1e-9  # share of the open area that is neglected
 _LUMP = 1e-4  # gaps below this share of the cut-off are combined in one cell
 _PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on each
@@ -337,11 +337,11 @@ def _density(
     ends = (first + gap) * narrow / np.sqrt(2), (first - gap) * narrow / np.sqrt(2)
     density[0] = share @ (erf(ends[0]) + erf(ends[1])) / (2 * first)
     # single precision is twice as fast, with a relative error of 1e-6
-    last = int(np.searchsorted(at, np.max(gap + _FAR * height)))
+    last = int(np.searchsorted(at, np.max(gap + _MAX_HEIGHTS * height)))
     unit = factor.max()
     factor, b = (factor / unit).astype(np.float32), b.astype(np.float32)
     a = np.multiply.outer(at[1:last].astype(np.float32), narrow.astype(np.float32))
-    near = np.flatnonzero(b < _FAR)  # Gaussians that extend across u = 0
+    near = np.flatnonzero(b < _MAX_HEIGHTS)  # Gaussians that extend across u = 0
     back = _bell(a[:, near] + b[near]) @ factor[near]
     a -= b
     density[1:last] = unit * (_bell(a) @ factor + back)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
 _HIGHEST = 24.0  # q d above which the layer equals a half-space to 1e-18
-_FAR = 12.0  # thicknesses beyond which the base is rigid for a line
+_RIGID_BASE_DISTANCE = 12.0  # thicknesses beyond which the base is rigid for a line
 
 
 class Layer(NamedTuple):
@@ -57,11 +57,11 @@ def _line_layer(poisson_ratio: float, share: float) -> tuple[CubicSpline, CubicS
     from scipy.interpolate import CubicSpline
 
     k, weight = _nodes(poisson_ratio, share)
-    s = np.linspace(0, _FAR, 1201)
+    s = np.linspace(0, _RIGID_BASE_DISTANCE, 1201)
     values = (1 - np.cos(np.outer(s, k))) @ (weight / k)
     slope = np.sin(np.outer(s[[0, -1]], k)) @ weight
     curve = CubicSpline(s, values, bc_type=((1, slope[0]), (1, slope[1])))
-    return curve, curve.antiderivative(), float(values[-1] - share * np.log(_FAR))
+    return curve, curve.antiderivative(), float(values[-1] - share * np.log(_RIGID_BASE_DISTANCE))
 
 
 def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndarray:
@@ -74,10 +74,10 @@ def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndar
 
     def antiderivative(t: np.ndarray) -> np.ndarray:
         size = np.abs(t) / thickness
-        far = np.maximum(size, _FAR)
+        far = np.maximum(size, _RIGID_BASE_DISTANCE)
         beyond = far * (share * (np.log(far) - 1) + level)
-        beyond -= _FAR * (share * (np.log(_FAR) - 1) + level)
-        return np.sign(t) * thickness * (integral(np.minimum(size, _FAR)) + beyond)
+        beyond -= _RIGID_BASE_DISTANCE * (share * (np.log(_RIGID_BASE_DISTANCE) - 1) + level)
+        return np.sign(t) * thickness * (integral(np.minimum(size, _RIGID_BASE_DISTANCE)) + beyond)
 
     rise = antiderivative(x + width / 2 - x[:, None]) - antiderivative(x - width / 2 - x[:, None])
     return np.asarray(2 / np.pi * rise)
@@ -91,8 +91,8 @@ def _round_layer(poisson_ratio: float, share: float) -> CubicSpline:
     from scipy.special import j0
 
     k, weight = _nodes(poisson_ratio, share)
-    s = np.linspace(0, _FAR, 1201)
-    far = np.array(-share / _FAR**2)
+    s = np.linspace(0, _RIGID_BASE_DISTANCE, 1201)
+    far = np.array(-share / _RIGID_BASE_DISTANCE**2)
     return CubicSpline(s, j0(np.outer(s, k)) @ weight, bc_type=((1, 0 * far), (1, far)))
 
 
@@ -114,7 +114,9 @@ def round_layer_kernel(
             apart = radius[:, None, None] ** 2 + ring**2 - 2 * radius[:, None, None] * ring * at
             s = np.sqrt(np.maximum(apart, 0)) / thickness
             value = np.where(
-                s < _FAR, curve(np.minimum(s, _FAR)), layer.share / np.maximum(s, _FAR)
+                s < _RIGID_BASE_DISTANCE,
+                curve(np.minimum(s, _RIGID_BASE_DISTANCE)),
+                layer.share / np.maximum(s, _RIGID_BASE_DISTANCE),
             )
             area = weight[i] * step[:, None] / 2 * ring * np.pi / sectors / 2
             total += half * area * value
@@ -137,8 +139,12 @@ def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[f
     basis = np.cos(n * np.arccos(node)[:, None])
     log = np.append(np.log(2), 1 / n[1:]) * np.cos(n * np.arccos(t)[:, None])
     s = half_width / layer.thickness * np.abs(t[:, None] - node)
-    far = np.maximum(s, _FAR)
-    base = np.where(s < _FAR, curve(np.minimum(s, _FAR)), layer.share * np.log(far) + level)
+    far = np.maximum(s, _RIGID_BASE_DISTANCE)
+    base = np.where(
+        s < _RIGID_BASE_DISTANCE,
+        curve(np.minimum(s, _RIGID_BASE_DISTANCE)),
+        layer.share * np.log(far) + level,
+    )
     matrix = np.zeros((order + 1, order + 1))
     matrix[:order, :order] = 2 * half_width * (log + base @ basis / many)
     matrix[:order, order] = 1.0

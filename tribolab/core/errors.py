@@ -167,7 +167,7 @@ def shown(value: object, most: int = 80) -> str:
     return text if len(text) <= most else f"{text[:most]} ..."
 
 
-_MOST = 60  # letters of a word; names in damaged files may have any length
+_MAX_LETTERS = 60  # letters of a word; names in damaged files may have any length
 
 
 _LISTED = 20
@@ -185,7 +185,7 @@ def nearest(word: str, known: Iterable[str], most: int | None = _LISTED) -> str:
     >>> nearest("x", ["left", "right", "up"], most=2)
     '; known are left, right and 1 more'
     """
-    known = [name if len(name) <= _MOST else f"{name[:_MOST]} ..." for name in known]
+    known = [name if len(name) <= _MAX_LETTERS else f"{name[:_MAX_LETTERS]} ..." for name in known]
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.6)
     if close:
         return "; did you mean " + " or ".join(repr(c) for c in close) + "?"

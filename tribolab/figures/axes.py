@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from tribolab.figures.spec import Axis, Panel, Series
 
 _ROOM = 0.06  # margin at both sides, as share of the span
-_SAME = 1e-5  # relative difference, or decades, below which values are equal
+_EQUAL_WITHIN = 1e-5  # relative difference, or decades, below which values are equal
 _LEAST_DECADES = 0.1  # smallest range of a logarithmic axis
 _LEAST_SHARE = 0.02  # smallest range of a linear axis, as share of the values
 _BELOW = 20  # on a logarithmic axis error bars extend the range down to the value divided by this
@@ -134,7 +134,7 @@ def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
 def _widen(low: float, high: float, log: bool) -> tuple[float, float]:
     """Return the ends of a range, wide enough that rounding noise does not fill it."""
     largest = max(abs(low), abs(high))
-    alone = high - low <= (_SAME if log else _SAME * largest)
+    alone = high - low <= (_EQUAL_WITHIN if log else _EQUAL_WITHIN * largest)
     least = 0.6 if log else largest or 1.0
     if not alone:
         least = _LEAST_DECADES if log else _LEAST_SHARE * largest

@@ -18,7 +18,7 @@ from tribolab.fit import limits
 from tribolab.fit.left_out import left_out, left_out_words
 from tribolab.fit.unknowns import Range, Unknowns, merge_old_options
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
-from tribolab.fit.variations import held_fixed, variations
+from tribolab.fit.variations import fixed_parameters, variations
 from tribolab.friction.statistics import NORMAL
 from tribolab.lubrication.parameters import (
     Interface,
@@ -177,7 +177,7 @@ def model_uncertainty(
     return stamp(
         data.assign_attrs(curve.attrs),
         **{"load_N" if contact.is_round else "load_N_m": force},
-        not_varied="; ".join(f"{name}: {reason}" for name, reason in left + held_fixed(base)),
+        not_varied="; ".join(f"{name}: {reason}" for name, reason in left + fixed_parameters(base)),
         not_in_model=left_out_words(left_out(contact, force, base.viscosity, psd)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",

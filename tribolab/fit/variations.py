@@ -206,7 +206,7 @@ def variations(base: Base) -> list[Variation | Skipped]:
     return [*rough, *(make(base) for make in _OF_ANY)]
 
 
-def held_fixed(base: Base) -> list[Skipped]:
+def fixed_parameters(base: Base) -> list[Skipped]:
     """Return the unknowns that are not varied."""
     fixed = {"geometry and load": _stated_text(base)}
     fixed |= dict(_FIXED if base.psd is None else _FIXED + _FIXED_IF_ROUGH)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.contact.line import line_kernel
 
-_FAR = 6.0  # distance in cell widths beyond which moments are computed by a series
+_SERIES_DISTANCE = 6.0  # distance in cell widths beyond which moments are computed by a series
 _GAUSS = 0.5 / np.sqrt(3)  # of the interval, from its centre
 _FINE = 129  # points for the minimum film: resolves 1e-4 of a cell's change
 
@@ -99,7 +99,7 @@ def _moments(x: np.ndarray, width: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     scale = x[-1] - x[0] + width.mean()
     apart = x - x[:, None]
-    near = np.abs(apart) < _FAR * width
+    near = np.abs(apart) < _SERIES_DISTANCE * width
     safe = np.where(near, 1.0, apart)
     third, fifth, seventh = width**3 / 12, width**5 / 80, width**7 / 448
     first = third / safe + fifth / (3 * safe**3) + seventh / (5 * safe**5)

@@ -28,7 +28,7 @@ from tribolab.lubrication.sweep import (
     wet_state,
 )
 
-_FAR = 10.0  # ratio of speeds above which a thick film is started directly
+_THICK_FILM_RATIO = 10.0  # ratio of speeds above which a thick film is started directly
 
 
 class System(NamedTuple):
@@ -128,7 +128,7 @@ def _continue(
     """Return solutions continued from the last speed on another mesh; None if that fails."""
     around = problem, system.line, system.liquid, force
     soon = system.psd is None or is_thick(*around, speeds[0])  # direct start possible
-    if not last.speed or (soon and speeds[0] > _FAR * last.speed):
+    if not last.speed or (soon and speeds[0] > _THICK_FILM_RATIO * last.speed):
         return None
     start = carried_state(problem, last.problem, last.solution.state)
     try:

@@ -15,11 +15,11 @@ from tribolab.units.stamping import stamp
 NOISE, BETWEEN = "noise and known zero of the run", "between runs"
 _NOT_STATED = "calibration not stated: statistical only"
 _RECTANGULAR = ("half-width", "step")
-# A scatter of few repeats may be small by chance. Below _FEW degrees of freedom its share x in the
-# Welch-Satterthwaite sum is increased to 1 - (1 - x)^(1 + _CHANCE/nu^2): the coverage of U95 for
-# two runs plus a calibration is then 93.4 to 96.4 % for any ratio of the two (87 to 95 % without),
+# A scatter of few repeats may be small by chance. Below _SMALL_DOF degrees of freedom its share x
+# in the Welch-Satterthwaite sum is increased to 1 - (1 - x)^(1 + _CHANCE/nu^2): the coverage of U95
+# for two runs plus a calibration is then 93.4 to 96.4 % for any ratio of the two (87 to 95 % without),
 # for three runs 95 to 95.8 %. For two runs no rule is within 1 %
-_FEW, _CHANCE = 4.0, 10.0
+_SMALL_DOF, _CHANCE = 4.0, 10.0
 _DOMINANT = 0.7  # share of the variance above which one rectangular part shapes the distribution
 
 
@@ -66,7 +66,7 @@ def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.n
     with np.errstate(divide="ignore", invalid="ignore"):
         variance = np.sum(parts**2, axis=0)
         share = np.minimum(parts**4 / variance**2, 1.0)
-        few = np.broadcast_to(dof, parts.shape) < _FEW
+        few = np.broadcast_to(dof, parts.shape) < _SMALL_DOF
         few[observed:] = False
         grown = 1 - (1 - share) ** (1 + _CHANCE / np.maximum(dof, 1.0) ** 2)
         nu = 1 / np.sum(np.where(few, grown, share) / dof, axis=0)

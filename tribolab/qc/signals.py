@@ -21,7 +21,7 @@ _BLOCK = 64  # samples with one noise level; steps of a run may be as short
 _NOISE_RATIO = 1.6  # ratio of noise levels that chance does not produce in so few samples
 
 _HELD = 3  # samples per reading of a slowly refreshed channel
-_LONGEST_HELD = 1 << 24  # samples; channels are not recorded much faster than they are refreshed
+_MAX_HELD = 1 << 24  # samples; channels are not recorded much faster than they are refreshed
 
 
 def missing(values: np.ndarray) -> np.ndarray:
@@ -245,7 +245,7 @@ def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
 
     Returns None unless most readings repeat: in a clipped signal only those at the end do.
     """
-    if values.size < 2 or values.size > _LONGEST_HELD:
+    if values.size < 2 or values.size > _MAX_HELD:
         return None
     changes = np.concatenate([[True], values[1:] != values[:-1]])
     lengths = np.diff(np.append(np.flatnonzero(changes), values.size))

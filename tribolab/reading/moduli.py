@@ -84,7 +84,7 @@ def read_modulus_table(
     return ModulusTable(data[0], data[1], data[2], float(np.median(data[3])), tuple(remarks))
 
 
-def holds_modulus(path: str | Path) -> bool:
+def is_modulus_file(path: str | Path) -> bool:
     """Whether a file holds a table of storage and loss modulus over frequency, by its beginning."""
     try:
         find_table(Path(path), None, HEAD)

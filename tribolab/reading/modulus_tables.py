@@ -14,7 +14,7 @@ import numpy as np
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
-from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.opening import isolated, report_damage
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.text.first_bytes import peek
 
@@ -315,7 +315,7 @@ def _sheets(path: Path, sheet: str | None) -> list[list[Row]]:
     import pandas as pd
 
     wanted = None if sheet is None else [sheet]
-    with damage_told(path, "workbook"):
+    with report_damage(path, "workbook"):
         found = pd.read_excel(path, sheet_name=wanted, dtype=object, header=None, engine="calamine")
     return [
         [["" if c is None or c != c else str(c) for c in row] for row in one.to_numpy(dtype=object)]

@@ -8,8 +8,8 @@ from typing import NamedTuple
 from tribolab.reading.lexicon.lexicon import known_words, normalise_label, role_of
 
 _HEAD_LINES = 40  # above such a table
-_MOST_ROWS = 2000  # more are no measurements of a person
-_LONGEST_LINE = 2000  # characters; tables of results have few columns
+_MAX_ROWS = 2000  # more are no measurements of a person
+_MAX_LINE = 2000  # characters; tables of results have few columns
 _MIN_RESULT_NAMES = 2  # names that only results have, or one and the load beside it
 _NUMERIC = 0.5  # of a row's cells
 # parameters of ISO 21920 and ISO 25178, with their unit perhaps
@@ -53,11 +53,11 @@ def find_results_table(text: str) -> ResultsTable | None:
     True
     """
     lines = [line.strip().strip('"') for line in text.splitlines() if line.strip()]
-    if len(lines) > _MOST_ROWS:
+    if len(lines) > _MAX_ROWS:
         return None
-    lines = [_BLANKS.sub("  ", line[: _LONGEST_LINE + 1]) for line in lines]
+    lines = [_BLANKS.sub("  ", line[: _MAX_LINE + 1]) for line in lines]
     for place, line in enumerate(lines[:_HEAD_LINES]):
-        if len(line) > _LONGEST_LINE:
+        if len(line) > _MAX_LINE:
             return None
         for between in (_CELLS, _COMMAS):
             labels = [label.strip('"') for label in between.split(line)]
@@ -84,7 +84,7 @@ def find_other_test(text: str) -> str:
     """
     lines = [line for line in text.splitlines() if line.strip()][:_HEAD_LINES]
     for line in lines:
-        for between in (_CELLS, _COMMAS) if len(line) <= _LONGEST_LINE else ():
+        for between in (_CELLS, _COMMAS) if len(line) <= _MAX_LINE else ():
             labels = [label.strip(' "') for label in between.split(_BLANKS.sub("  ", line))]
             if any(map(_NUMBER.fullmatch, labels)):
                 continue

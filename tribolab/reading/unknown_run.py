@@ -114,7 +114,7 @@ def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run
     return run
 
 
-def holds_run(path: Path, *, by_name: bool = True) -> bool:
+def is_run_file(path: Path, *, by_name: bool = True) -> bool:
     """Whether a file that no dialect knows holds a run, by names in its header or at all."""
     draft = draft_of(path)
     if draft is None:
@@ -134,10 +134,10 @@ def _holds_signals(path: Path) -> bool:
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
-    from tribolab.reading.moduli import holds_modulus
+    from tribolab.reading.moduli import is_modulus_file
     from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
 
-    if holds_modulus(path):
+    if is_modulus_file(path):
         what = "a table of a modulus over frequency: no friction is in it"
         raise ReadError(what, where=path, cure=cures.MODULUS) from error
     try:

@@ -13,7 +13,7 @@ from tribolab.core.untyped import Json
 
 _TOP = 65534  # resolution of a value as a share of its range; 65535 is NaN
 _WITHIN = 0.25  # accuracy of a time as a share of the distance to the next sample
-_MOST_KNOTS = 1000
+_MAX_KNOTS = 1000
 _FINER, _MOST_TICKS = 16, 2**32 - 1  # ticks in the shortest steps of an irregular clock
 
 
@@ -103,7 +103,7 @@ def _knots(since: np.ndarray) -> list[int] | None:
         if off <= 1:
             continue
         knots.add(worst)
-        if len(knots) > _MOST_KNOTS:
+        if len(knots) > _MAX_KNOTS:
             return None
         parts += [(a, worst), (worst, b)]
     return sorted(knots)

@@ -17,7 +17,9 @@ from tribolab.regime.words import REVERSED, SAW, SINE, friction_text, percent_te
 if TYPE_CHECKING:
     from tribolab.regime.model import Mode
 
-_FAR = 10.0  # ratio of speeds above which a plateau and the model's boundary regime differ
+_MAX_SPEED_RATIO = (
+    10.0  # ratio of speeds above which a plateau and the model's boundary regime differ
+)
 _MIN_SLIP_RATIO = 2.0  # ratio of the friction of uniform slip to that measured
 _MIN_DROP_RATIO = 1.5  # ratio of drops at different speeds
 _MIN_FALL = 0.10  # relative; a smaller fall of friction between two speeds is ignored
@@ -186,7 +188,7 @@ def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | N
         words = f"at {speed_text(computed)}"
     text = f"the measured plateau reaches up to {speed_text(end)}"
     text += f"; the model's boundary regime ends {words}"
-    if end > _FAR * computed:
+    if end > _MAX_SPEED_RATIO * computed:
         return Evidence(FOR, text + f", {float(f'{end / computed:.1g}'):g} times slower", "curve")
     return Evidence(AGAINST, text, "curve")
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tribolab.regime.model import Evidence, Mode
 
 _STEADY, SAW, SINE, REVERSED = CLASSES
-_LONG = 0.5e-3  # m; shorter waves are neither turns of a track nor pitches of a screw
+_MAX_WAVELENGTH = 0.5e-3  # m; shorter waves are neither turns of a track nor pitches of a screw
 _MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # over which a wavelength is fixed
 
 
@@ -108,7 +108,7 @@ def suggestions(
     """Return the measurements that would decide."""
     length = _fixed_wavelength(slip)
     compare: tuple[str, ...] = ()
-    if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > _LONG:
+    if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > _MAX_WAVELENGTH:
         compare = (
             f"compare the wavelength, {1e3 * length:.3g} mm at every speed, with the "
             "circumference of the track (2 π times its radius), the pitch of the drive's screw and "

@@ -13,7 +13,7 @@ from tribolab.report.tables import read_csv
 from tribolab.units.quantities import QUANTITIES
 
 WORKBOOK = "tables.xlsx"
-_MOST_ROWS = 1_048_574  # most rows of a sheet, without names and units
+_MAX_ROWS = 1_048_574  # most rows of a sheet, without names and units
 _ENDINGS = {column(name)[len(name) + 1 :]: known.unit for name, known in QUANTITIES.items()}
 _ENDINGS = {ending: unit for ending, unit in _ENDINGS.items() if ending}
 
@@ -61,5 +61,5 @@ def write_other_tables(folder: Path, form: str) -> None:
             row = [unit_of(str(each)) for each in table]
             row[0] = row[0] or "unit"  # no sheet starts with an empty cell
             units = pd.DataFrame([row], columns=table.columns)
-            sheet = pd.concat([units, table.head(_MOST_ROWS).astype(object)], ignore_index=True)
+            sheet = pd.concat([units, table.head(_MAX_ROWS).astype(object)], ignore_index=True)
             sheet.to_excel(book, sheet_name=name[:31], index=False)

@@ -16,7 +16,7 @@ _PRESSURES = np.geomspace(1e-3, 1.0, 46) * 1e6  # Pa
 # m/s; rounded, to remove duplicates that differ in the last digit
 _SPEEDS = np.unique([*(float(f"{v:.3g}") for v in np.geomspace(1e-9, 1e-1, 33)), *xu2026.SPEEDS])
 _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # relative to h_rms
-_MOST_PRESSED = 0.3  # share of E* up to which the separation is shown
+_MAX_PRESSED = 0.3  # share of E* up to which the separation is shown
 
 
 def dry_contact(name: str) -> SurfaceGroups:
@@ -63,7 +63,7 @@ def dry_contact(name: str) -> SurfaceGroups:
         "loads": loads,
         "separation": stamp(
             xr.Dataset({"contact_pressure": pressed}).where(
-                pressed < _MOST_PRESSED * modulus, drop=True
+                pressed < _MAX_PRESSED * modulus, drop=True
             ),
             rms_roughness_m=height,
             decay_length_m=table.decay_length,

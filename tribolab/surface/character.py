@@ -7,8 +7,8 @@ import xarray as xr
 
 from tribolab.surface.gaps import bridge_gaps, gaps_in
 
-_MOST_POINTS = 8192  # of a profile; a dominant wave must be sampled by several points a period
-_MOST_ROWS = 512  # of a map: the mean power of each line is then accurate to 6 %
+_MAX_POINTS = 8192  # of a profile; a dominant wave must be sampled by several points a period
+_MAX_ROWS = 512  # of a map: the mean power of each line is then accurate to 6 %
 _PERIODS = 12  # fewer periods in a scan can arise by chance, which makes up to six
 _LOBE = 2  # lines on either side over which a Hann window spreads a wave
 _DOMINANT = 0.55  # share of the mean square height that no single wave of a random surface reaches
@@ -132,9 +132,9 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
 
 def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
     """Return the mean power of rows (Hann window), and the wavelength [m] of the first line."""
-    joined = -(-rows.shape[-1] // _MOST_POINTS)
+    joined = -(-rows.shape[-1] // _MAX_POINTS)
     number = rows.shape[-1] // joined
-    rows = rows[:: -(-len(rows) // _MOST_ROWS), : joined * number]
+    rows = rows[:: -(-len(rows) // _MAX_ROWS), : joined * number]
     rows = rows.reshape(len(rows), number, joined).mean(axis=-1)
     taper = np.hanning(number)
     rows = rows - (rows @ taper / taper.sum())[:, None]

@@ -21,7 +21,7 @@ from tribolab.units.stamping import stamp
 
 STANDARD_CUTOFF = 0.8e-3  # m, cut-off of most surfaces (ISO 21920-3)
 _LENGTHS = 5  # length of a shorter profile in cut-offs
-_FEWEST_LENGTHS = 3  # sampling lengths needed to estimate the standard error of their mean
+_MIN_LENGTHS = 3  # sampling lengths needed to estimate the standard error of their mean
 
 
 def roughness_parameters(
@@ -222,7 +222,7 @@ def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {
         name: of.std(-1, ddof=1) / np.sqrt(of.shape[-1])
         for name, of in by_length.items()
-        if of.shape[-1] >= _FEWEST_LENGTHS
+        if of.shape[-1] >= _MIN_LENGTHS
     }
 
 

@@ -11,8 +11,8 @@ from tribolab.core.errors import AnalysisError, UnitError, shown
 from tribolab.units.grammar import parse_unit
 from tribolab.units.reciprocals import (
     Counted,
+    contains_angle,
     counts_turns,
-    holds_an_angle,
     reciprocal,
     scale_of_reciprocal,
     usual_reading,
@@ -200,7 +200,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     if turning is not None:
         return float(f"{turning:.15g}"), 0.0
     counted = reciprocal(si_unit)
-    if (si_unit in ("", "1") or counted) and holds_an_angle(unit):
+    if (si_unit in ("", "1") or counted) and contains_angle(unit):
         raise UnitError(
             f"unit '{shown(unit)}' counts an angle or cycles, and cannot become '{si_unit}'"
         )

@@ -161,12 +161,12 @@ _ANGLES = re.compile(
 )
 
 
-def holds_an_angle(unit: str) -> bool:
+def contains_angle(unit: str) -> bool:
     """Return whether a unit names cycles or an angle, which pint treats as pure numbers.
 
     Examples
     --------
-    >>> holds_an_angle("rad s/m"), holds_an_angle("°C"), holds_an_angle("degC")
+    >>> contains_angle("rad s/m"), contains_angle("°C"), contains_angle("degC")
     (True, False, False)
     """
     return _ANGLES.search(unit) is not None

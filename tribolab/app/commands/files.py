@@ -33,7 +33,7 @@ from tribolab.app.streams import say
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-_MANY = 12  # number of files above which other processes are worthwhile
+_MIN_FILES_IN_PARALLEL = 12  # number of files above which other processes are worthwhile
 
 
 def check(
@@ -161,7 +161,7 @@ def info(
             # imported late for a quick start
             from tribolab.app.info.file_info import Descriptions
             from tribolab.campaign.engine.stage import perform
-            from tribolab.reading.moduli import holds_modulus
+            from tribolab.reading.moduli import is_modulus_file
 
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             described = perform(Descriptions(files, instrument), pool, progress)
@@ -176,7 +176,7 @@ def info(
             if describe_by_questions(files, keep=False) is not None:
                 raise typer.Exit
         alone = len(described) == 1 and not described[0].error
-        if alone and not holds_modulus(described[0].file):
+        if alone and not is_modulus_file(described[0].file):
             file = shlex.quote(str(described[0].file))
             file += f" --instrument {shlex.quote(instrument)}" if instrument else ""
             say(f"next: tribolab check {file} (is it usable?), tribolab run {file} (its results)")
@@ -206,5 +206,5 @@ def _pool(
     from tribolab.app.needed import FILES
     from tribolab.campaign.engine.executor import workers
 
-    jobs = 1 if jobs is None and len(files) < _MANY else jobs
+    jobs = 1 if jobs is None and len(files) < _MIN_FILES_IN_PARALLEL else jobs
     return workers(jobs, modules=FILES)

@@ -99,12 +99,12 @@ def is_terminal() -> bool:
 def _leaves_open(path: Path) -> bool:
     # imported late for a quick start
     from tribolab.reading.kinds import kind_of
-    from tribolab.reading.moduli import holds_modulus
+    from tribolab.reading.moduli import is_modulus_file
     from tribolab.reading.unknown_run import draft_of, left_open
 
     if not path.is_file() or path.suffix == ".toml" or kind_of(path) != "unknown":
         return False
-    draft = None if holds_modulus(path) else draft_of(path)
+    draft = None if is_modulus_file(path) else draft_of(path)
     return draft is not None and left_open(draft) is not None
 
 

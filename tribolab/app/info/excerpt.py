@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tribolab.reading.text.first_bytes import wide_encoding
 
-_LONG = 1 << 26  # bytes of the longest file that is read as a whole
+_MAX_WHOLE = 1 << 26  # bytes of the longest file that is read as a whole
 _START, _PIECE, _PIECES = 1 << 18, 1 << 11, 512  # bytes of the start and of a sample; samples
 _MAX_LINE = 1 << 16  # bytes
 
@@ -35,7 +35,7 @@ def write_excerpt(path: Path, folder: Path) -> Excerpt | None:
     Excerpt or None
         The excerpt; None of a short file, and of one without lines of single-byte characters.
     """
-    if not path.is_file() or (size := path.stat().st_size) <= _LONG:
+    if not path.is_file() or (size := path.stat().st_size) <= _MAX_WHOLE:
         return None
     with path.open("rb") as source:
         start = source.read(_START)

@@ -21,7 +21,7 @@ from tribolab.reading.dialect.find import known_dialects, load_dialect
 from tribolab.reading.interpret.missing import missing_inputs
 from tribolab.reading.kinds import kind_of
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
-from tribolab.reading.moduli import holds_modulus, read_modulus_table
+from tribolab.reading.moduli import is_modulus_file, read_modulus_table
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.runs.companion import CompanionFacts, describe_companion, has_companion
@@ -30,7 +30,7 @@ from tribolab.reading.runs.force_ratio import doubt_about, doubt_about_coefficie
 from tribolab.reading.runs.read_run import read_log as known_log
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.text.first_bytes import peek
-from tribolab.reading.unknown_run import draft_of, holds_run, read_log
+from tribolab.reading.unknown_run import draft_of, is_run_file, read_log
 from tribolab.units.quantities import quantity
 
 if TYPE_CHECKING:
@@ -60,9 +60,9 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
         if part is not None and (lines := _excerpt_lines(part, path, instrument)):
             return lines
     kind = kind_of(path, instrument)
-    if kind == "unknown" and holds_modulus(path):
+    if kind == "unknown" and is_modulus_file(path):
         return _modulus_lines(path)
-    drafted = kind == "unknown" and holds_run(path)
+    drafted = kind == "unknown" and is_run_file(path)
     if drafted or kind == "run":
         log = read_log(path, instrument)
         facts = file_facts(log, path, instrument)
@@ -77,7 +77,7 @@ def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> 
     """Return how a long run is interpreted, from an excerpt; empty if that does not suffice."""
     try:
         kind = kind_of(path, instrument)
-        drafted = kind == "unknown" and holds_run(path)
+        drafted = kind == "unknown" and is_run_file(path)
         if not drafted and (kind != "run" or has_companion(path, instrument)):
             return []
         log = read_log(path, instrument, part.file)
@@ -172,7 +172,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
             raise
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
             # a map or profile that lacks units only
-            bare = isinstance(error, NotSaidError) and not holds_run(path, by_name=False)
+            bare = isinstance(error, NotSaidError) and not is_run_file(path, by_name=False)
             draft = draft_of(path)
             named = draft is not None and draft.kind == "table"
             try:

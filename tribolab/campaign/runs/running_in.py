@@ -11,7 +11,7 @@ from tribolab.records.parts import Row
 from tribolab.records.runs.running_in_record import RunningIn
 from tribolab.records.wording import NORMAL, plain_value
 
-_MOST_POINTS = 384  # columns of friction along a run for figures
+_MAX_POINTS = 384  # columns of friction along a run for figures
 
 
 def running_in_of(
@@ -45,7 +45,7 @@ def _course(history: History) -> list[Row]:
         "friction_coefficient": history.friction,
         "wear_depth_m": history.wear,
     }
-    blocks = {name: blocks_of(of, _MOST_POINTS).tolist() for name, of in columns.items() if of.size}
+    blocks = {name: blocks_of(of, _MAX_POINTS).tolist() for name, of in columns.items() if of.size}
     speed = {"sliding_speed_m_s": plain_value(history.speed)}
     names = list(blocks)
     return [

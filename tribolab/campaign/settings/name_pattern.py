@@ -10,7 +10,7 @@ _FIELD = re.compile(r"\{([^{}]*)\}|(\*)")
 _LABEL = r"[^\W_]+(?:[+#][^\W_]*)*"  # letters and digits: _ - . and spaces part the labels
 _MARKS = "_- "  # that separate whole words
 _SECONDS = 0.5
-_MOST_STARS = 6
+_MAX_STARS = 6
 
 
 class NamePattern:
@@ -50,8 +50,8 @@ class NamePattern:
                 )
             if names.count(name) > 1:
                 raise ValueError(f"'{name}' stands there twice")
-        if text.count("*") > _MOST_STARS:
-            raise ValueError(f"more than {_MOST_STARS} * are too many")
+        if text.count("*") > _MAX_STARS:
+            raise ValueError(f"more than {_MAX_STARS} * are too many")
         parts, end = [], 0
         mark = next((each for each in _MARKS if f"}}{each}{{" in text), _MARKS[0])
         first, other = (".+", f"[^{re.escape(mark)}]+") if whole_words else (_LABEL, _LABEL)

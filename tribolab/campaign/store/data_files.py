@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 UNFINISHED = ".part"
-_LITTLE = 1 << 20
+_MIN_SIZE = 1 << 20
 CURES = {
     errno.ENOSPC: "the disk is full; make room or choose another folder with --output",
     errno.EDQUOT: "the disk quota is used up; make room or choose another folder with --output",
@@ -83,7 +83,7 @@ def _number_of(
     """Return the errno of a failed write; the HDF5 library hides it in its "HDF error"."""
     cause = error.__cause__ if isinstance(error, TribolabError) else error
     number = getattr(cause, "errno", None)
-    if folder.is_dir() and shutil.disk_usage(folder).free < _LITTLE:
+    if folder.is_dir() and shutil.disk_usage(folder).free < _MIN_SIZE:
         return errno.ENOSPC
     largest, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
     if largest != resource.RLIM_INFINITY and sum(g.nbytes for g in groups.values()) > largest:

@@ -28,7 +28,7 @@ from matplotlib.ticker import (
 
 from tribolab.core.wording import number
 
-_MANY = 1e4
+_MAX_DECADES = 1e4
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -42,7 +42,7 @@ def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: b
     axis.set_major_formatter(FuncFormatter(power_of_ten))
     axis.set_minor_locator(NullLocator())
     axis.set_minor_formatter(NullFormatter())
-    subs = (1,) if low > 0 and high / low > _MANY else range(2, 10)
+    subs = (1,) if low > 0 and high / low > _MAX_DECADES else range(2, 10)
     there = (a for a in axis.axes.artists if isinstance(a, SmallTicks))
     if small and not any(ticks.axis is axis for ticks in there):
         axis.axes.add_artist(SmallTicks(axis, LogLocator(subs=subs, numticks=90)))

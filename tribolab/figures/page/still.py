@@ -37,8 +37,8 @@ _LETTER = 6.6  # mean width of a character [px]
 _LINE = 18  # height of a legend row [px]
 _TOP, _RIGHT, _BOTTOM = 8, 12, 42
 _BETWEEN = 16  # distance between panels [px]
-_MOST = 240  # most points of a line
-_MOST_HEAT = 400
+_MAX_POINTS = 240  # most points of a line
+_MAX_HEAT = 400
 
 
 @dataclass(frozen=True)
@@ -195,11 +195,11 @@ def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
         upper = [box.at(x, y) for x, y in zip(curve.x, curve.high, strict=True)]
         yield from marks.drawn_band([p for p in lower if p], [p for p in upper if p], curve)
     elif curve.style == "heat":
-        kept = thinned(len(curve.x), _MOST_HEAT)
+        kept = thinned(len(curve.x), _MAX_HEAT)
         levels = [(box.at(curve.x[k], curve.y[k]), float(curve.high[k])) for k in kept]
         yield from marks.drawn_heat([(at, value) for at, value in levels if at])
     else:
-        kept = thinned(len(curve.x), _MOST)
+        kept = thinned(len(curve.x), _MAX_POINTS)
         yield from marks.drawn_line([box.at(curve.x[k], curve.y[k]) for k in kept], curve)
 
 

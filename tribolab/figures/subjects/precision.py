@@ -12,7 +12,7 @@ from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.metrology.budget_result import UncertaintyBudget
 
-_SMALL = 1e-3  # share of the largest part below which a part has no bar
+_MIN_SHARE = 1e-3  # share of the largest part below which a part has no bar
 _SPREAD = 0.06  # offset of points at one speed
 
 
@@ -45,7 +45,7 @@ def uncertainty_budget(budget: UncertaintyBudget, at: int | None = None) -> Figu
     table = budget.table(at)
     mu = abs(table.attrs["friction_coefficient"])
     share = 100 * table["contribution"].to_numpy() / mu
-    kept = share >= _SMALL * share[:-1].max(initial=0.0)
+    kept = share >= _MIN_SHARE * share[:-1].max(initial=0.0)
     names, share = table.index[kept].to_numpy(dtype=str).tolist()[::-1], share[kept][::-1]
     if "statistical only" in budget.says:
         names[0] += " (statistical only)"

@@ -13,7 +13,7 @@ from tribolab.figures.spec import FigureSpec, Panel, Series, axis_of
 
 _COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
 _FIRST = ("friction_force", "normal_force", "friction_coefficient", "sliding_velocity", "position")
-_MOST_PANELS = 6
+_MAX_PANELS = 6
 
 
 @plotted(panels=0)
@@ -52,7 +52,7 @@ def run(run: xr.Dataset) -> FigureSpec:
     ordered = sorted(
         numbers, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST)
     )
-    shown = ordered[:_MOST_PANELS]
+    shown = ordered[:_MAX_PANELS]
     time, left = np.asarray(run["time"], float), len(numbers) - len(shown)
     series = [
         Series("", *envelope(time, np.asarray(run[name], float), _COLUMNS), colour=BLACK,

@@ -33,7 +33,7 @@ _MEMORY_GRID = np.geomspace(0.05, 6.0, 8)  # correlation times, as shares of the
 _WHITE_SHARES = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 _MIN_COSINES = 4
 _MAX_STEPS = 60  # of Newton's method for U95; about six are needed
-_CLOSE = 1e-11  # relative step at which U95 is found
+_CONVERGED = 1e-11  # relative step at which U95 is found
 _WIDEST_BRACKET = np.log(1e12)
 _OUTSIDE_COVERAGE = 0.05
 
@@ -167,5 +167,5 @@ def _half_interval(weight: np.ndarray, errors: np.ndarray, free: np.ndarray) -> 
             step = np.log(beyond / (_OUTSIDE_COVERAGE / 2)) * beyond / slope
         inside = (x + step >= low[left]) & (x + step <= high[left])
         found[left] = np.where(inside, x + step, (low[left] + high[left]) / 2)
-        left = left[np.abs(found[left] - x) > _CLOSE]
+        left = left[np.abs(found[left] - x) > _CONVERGED]
     return np.where(known, np.exp(found), 0.0)

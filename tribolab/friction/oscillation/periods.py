@@ -129,7 +129,9 @@ def period_verdict(
         unclaimed
         or (few and abs(np.log(slow.periods / count)) > limits.MAX_DIFFERENCE_OF_PERIODS.value)
     ):
-        return _undecided(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
+        return _undecided(
+            f"a slow wave of some {slow.periods:.1f} periods, {_TOO_FEW_PERIODS}", slow.periods
+        )
     repeats = seen.periods.size > 0 and not odd and seen.kind != SLIP_KINDS[2]
     if (
         kind != CLASSES[0]
@@ -162,7 +164,7 @@ def period_verdict(
     if count < limits.MIN_CYCLES_IN_RECORD.value:
         # slow drift also has a "period"; it counts only if a single wave explains nearly everything
         known = count if slow is not None else np.nan
-        return _undecided(f"only {count:.1f} periods, {_FEW}", known)
+        return _undecided(f"only {count:.1f} periods, {_TOO_FEW_PERIODS}", known)
     if (
         not seen.kind
         and significant
@@ -215,7 +217,7 @@ def _mixed(oscillation: Oscillation, lines: tuple[Component, ...], form: Wavefor
     return ""
 
 
-_FEW = "too few to separate an oscillation from slow drift: slide further at this speed"
+_TOO_FEW_PERIODS = "too few to separate an oscillation from slow drift: slide further at this speed"
 
 
 def _undecided(why: str, periods: float = np.nan) -> PeriodVerdict:

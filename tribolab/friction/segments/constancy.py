@@ -21,7 +21,7 @@ from tribolab.arrays.chunks import running_total
 from tribolab.arrays.medians import median, median_of_known
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.plateaus import running_median
-from tribolab.friction.segments.proof import Readings, surely_changes
+from tribolab.friction.segments.proof import Readings, changes_significantly
 
 _BINS_OF_PIECE = 16  # bins within a piece
 _NEIGHBOURHOOD = 1.5  # of its length are examined on each side
@@ -191,7 +191,7 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
     core = slice(1, -1)  # starting and stopping transients at the ends are trimmed
     if _changes(place[core], inside[core], drift * abs(level)):
         return False
-    if last - first <= _FEW_READINGS and surely_changes(
+    if last - first <= _FEW_READINGS and changes_significantly(
         data.readings, begin, end, drift * abs(level)
     ):
         return False

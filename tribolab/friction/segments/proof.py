@@ -141,7 +141,7 @@ def change_along(readings: Readings, begin: float, end: float) -> tuple[float, f
     return float(speeds[high] - speeds[low]), float(np.sqrt(apart @ line.covariance @ apart))
 
 
-def surely_changes(readings: Readings, begin: float, end: float, most: float) -> bool:
+def changes_significantly(readings: Readings, begin: float, end: float, most: float) -> bool:
     """Return whether the parabola through a piece clearly changes by more than `most` [m/s]."""
     change, error = change_along(readings, begin, end)
     return bool(change > most + limits.MIN_ERRORS_OF_CHANGE.value * error)

@@ -14,7 +14,7 @@ from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 _BLOCKS = {1: 20, 2: 4}  # blocks of the baseline along each axis of profiles and maps
 _WIDEST = {1: 0.04, 2: 0.2}  # share of all points; a wider feature is form, such as a chamfer
 _STUCK_BLOCKS = 50  # blocks of a profile in which a stuck stylus is looked for
-_FEWEST_IN_BLOCK = 16
+_MIN_IN_BLOCK = 16
 # half widths of a noisy stop, in units of the blocks' roughness
 _BANDS = 0.02 * np.sqrt(2.0) ** np.arange(11)
 _PILE_RATIO = 4.0  # of points in the band at the end of the range to the next; summits give 1.4
@@ -130,7 +130,7 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
     (1000, 2000)
     """
     size = height.size // _STUCK_BLOCKS
-    if size < _FEWEST_IN_BLOCK:
+    if size < _MIN_IN_BLOCK:
         return None
     blocks = height[: size * _STUCK_BLOCKS].reshape(_STUCK_BLOCKS, size)
     spread, noise = _line_scatter(blocks)
@@ -205,7 +205,7 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
     True
     """
     found = np.zeros(height.size, dtype=bool)
-    if height.size < _STUCK_BLOCKS * _FEWEST_IN_BLOCK:
+    if height.size < _STUCK_BLOCKS * _MIN_IN_BLOCK:
         return found
     blocks = height[: height.size - height.size % _STUCK_BLOCKS].reshape(_STUCK_BLOCKS, -1)
     scale, digit = float(median(_line_scatter(blocks)[0])), rounding_step(height)

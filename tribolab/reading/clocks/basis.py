@@ -18,7 +18,7 @@ Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
 
 _STOP_LENGTHS = 9  # number of stop lengths
 _SHORTEST_STOP = 1e-4  # shortest stop length, as share of the longest stroke
-_LONGEST_STOP = 0.3
+_MAX_STOP = 0.3
 _SPEED_FUNCTIONS = 6  # most hat functions of the speed
 _RELAXATION_TIMES = (0.1, 0.5, 3.0)  # relaxation times of the force, as multiples of the usual rest
 _RECOVERY_LENGTHS = (1e-4, 3e-3)  # recovery lengths after a rest, as share of the longest stroke
@@ -68,7 +68,7 @@ class Basis:
 
     def _following_functions(self, velocity: Array, path: Array) -> Array:
         """Return the basis functions of a force that follows the motion."""
-        lengths = self.longest * np.geomspace(_SHORTEST_STOP, _LONGEST_STOP, _STOP_LENGTHS)
+        lengths = self.longest * np.geomspace(_SHORTEST_STOP, _MAX_STOP, _STOP_LENGTHS)
         moved = Play(path)
         stops = ((path - moved.followed(r)) / r for r in lengths)
         way = np.where(
@@ -80,7 +80,7 @@ class Basis:
     def _leading_functions(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
         """Return the basis functions of a force that rises before the log shows motion."""
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
-        lengths = self.longest * np.geomspace(_SHORTEST_STOP, _LONGEST_STOP, _STOP_LENGTHS)
+        lengths = self.longest * np.geomspace(_SHORTEST_STOP, _MAX_STOP, _STOP_LENGTHS)
         ramps = (self._ramps(velocity, way, last, r) for r in lengths)
         stop = (path - Play(path).followed(lengths[-3])) / lengths[-3]
         return self._table(chain(ramps, [stop], self._speed_rest_and_inertia(velocity, way, last)))

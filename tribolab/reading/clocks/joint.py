@@ -73,7 +73,7 @@ class Answer(NamedTuple):
     prior: float
 
 
-def told_by_motion(
+def shift_from_motion(
     force_time: Array,
     force: Array,
     basis: Basis,

@@ -29,7 +29,7 @@ from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.candidate_shifts import Candidate, candidates, likeliest
 from tribolab.reading.clocks.classes import Classes, coarse_shift, motion_classes
-from tribolab.reading.clocks.joint import told_by_motion
+from tribolab.reading.clocks.joint import shift_from_motion
 from tribolab.reading.clocks.motion import Motion, clean_motion
 from tribolab.reading.clocks.onset import refine_by_onsets
 from tribolab.reading.clocks.starts import (
@@ -203,7 +203,7 @@ def _estimated(
     near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
     if estimate.rate != 0.0:
         basis = Basis(motion_time + estimate.rate * (motion_time - middle), motion)
-    joint = told_by_motion(force_time, force, basis, estimate.shift, near, least)
+    joint = shift_from_motion(force_time, force, basis, estimate.shift, near, least)
     if weak and (joint is None or joint.unexplained > limits.MAX_UNEXPLAINED_OF_AGREEMENT.value):
         return None
     if joint is not None:

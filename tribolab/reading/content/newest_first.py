@@ -6,7 +6,7 @@ import numpy as np
 
 from tribolab.reading.content.model import Content
 
-_FEW = 8  # rows needed to recognise the order
+_MIN_ROWS = 8  # rows needed to recognise the order
 
 
 def is_newest_first(time: np.ndarray) -> bool:
@@ -15,7 +15,7 @@ def is_newest_first(time: np.ndarray) -> bool:
     >>> is_newest_first(np.arange(9.0)[::-1]), is_newest_first(np.arange(9.0))
     (True, False)
     """
-    if time.size < _FEW or not time[0] > time[-1]:
+    if time.size < _MIN_ROWS or not time[0] > time[-1]:
         return False
     return bool((time[1:] < time[:-1]).all())
 

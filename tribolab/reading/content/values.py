@@ -66,7 +66,7 @@ def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
 
 def _check_later_tables(text: str, value: Value, content: Content, dialect: Dialect) -> None:
     """Raise if the text before a later table states another value of an input."""
-    reckoned = value.name in dialect.values_reckoned_with
+    reckoned = value.name in dialect.values_used
     if value.source != "preamble" or value.pattern is None or not reckoned:
         return
     for piece in content.pieces[1:]:

@@ -152,7 +152,7 @@ class Dialect(Strict):
         return self
 
     @property
-    def values_reckoned_with(self) -> set[str]:
+    def values_used(self) -> set[str]:
         """Names of values and others that the speed or formulas depend on."""
         formulas = (names_in(parse_formula(rule.formula)) for rule in self.derived)
         return set(self.speed.values_named.values()).union(*formulas)

@@ -14,7 +14,7 @@ _GOALS: dict[Goal, tuple[str, ...]] = {  # only the first may be derived by rule
     "speed": ("sliding_velocity", "position", "set_speed"),
 }
 _ORDER = ("track_radius", "arm", "stroke", "friction_force", "normal_force", "sliding_velocity")
-_SAME = {"first_radius": "track_radius", "second_radius": "track_radius"}
+_SYNONYMS = {"first_radius": "track_radius", "second_radius": "track_radius"}
 _RADIUS = 'radius = "(a length)" under [speed] of a dialect'
 _FORMULA = "formula = \"torque / '(a length)'\" under [[derived]] of a dialect"
 _STROKE = (
@@ -87,7 +87,7 @@ def missing_inputs(
     for goal, (first, *others) in _GOALS.items():
         if not any(name in given for name in others):
             for member in missing_members(first, given, facts):
-                of_member = goals.setdefault(_SAME.get(member, member), [])
+                of_member = goals.setdefault(_SYNONYMS.get(member, member), [])
                 of_member += [] if goal in of_member else [goal]
     return [
         MissingInput(member, tuple(goals[member]), frozenset(facts))

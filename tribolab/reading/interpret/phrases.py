@@ -21,7 +21,7 @@ from tribolab.reading.numbers import NUMBER, Number, decimal, numbers_in
 from tribolab.units.spellings import WEIGHTS
 
 LONGEST_LINE = 300  # characters of a line that are inspected
-_MOST_OF_LINE = 8  # most numbers of a line
+_MAX_OF_LINE = 8  # most numbers of a line
 _CAPITALS = 3  # letters of a unit that may be in capitals
 _ENDS = " \t:=~≈＝：-–"
 _CLAUSES = re.compile(
@@ -77,7 +77,7 @@ def phrases(line: str) -> list[Phrase]:
     line = line[:LONGEST_LINE].strip()
     for number in numbers_in(line):
         unit = _unit_of(number)
-        if not unit or len(said) == _MOST_OF_LINE:
+        if not unit or len(said) == _MAX_OF_LINE:
             continue
         before = line[done : number.start].rstrip(_ENDS)
         clauses = [clause for clause in _CLAUSES.split(before) if clause.strip()]

@@ -26,7 +26,7 @@ from tribolab.reading.interpret.unit_texts import converts
 from tribolab.units.quantities import QUANTITIES
 from tribolab.units.spellings import WEIGHTS
 
-_MOST_MEMBERS = 500  # most combinations of columns for one rule
+_MAX_MEMBERS = 500  # most combinations of columns for one rule
 Units = dict[int, str]
 
 
@@ -101,7 +101,7 @@ def _members(rule: Rule, candidates: Sequence[Candidate]) -> Iterator[tuple[int,
         [place for place, candidate in enumerate(candidates) if name in candidate.quantities]
         for name in rule.members
     ]
-    for places in itertools.islice(itertools.product(*options), _MOST_MEMBERS):
+    for places in itertools.islice(itertools.product(*options), _MAX_MEMBERS):
         if len(set(places)) == len(places):
             yield places
 

@@ -37,7 +37,7 @@ from tribolab.reading.lexicon.lexicon import (
 from tribolab.reading.numbers import NUMBER
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 
-_LONGEST_ENTRY = 1000  # characters of a line with a key, as searches take quadratic time
+_MAX_ENTRY = 1000  # characters of a line with a key, as searches take quadratic time
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"; of testXpert
 # "Test speed";"mm/min";"100"
 _SAYS, _IN_CELLS = (  # the latter: "Dead weight,500,g"
@@ -112,7 +112,7 @@ def amounts_of(lines: tuple[str, ...], most: int) -> Amounts:
     for line in lines:
         if len(found) >= most:
             break
-        line = line[:_LONGEST_ENTRY]
+        line = line[:_MAX_ENTRY]
         entry = _entry(line.rstrip())
         # a digit before the colon means a time of day, unless it is a step number
         if entry and (not entry["key"][-1].isdigit() or _STEP_TITLE.match(entry["key"])):
@@ -141,7 +141,7 @@ def texts_of(lines: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     >>> texts_of(("Drive: crank", "Units um", "an eccentric drive"))
     (('Drive', 'crank'), ('Units', 'um'), ('drive', 'crank'), ('drive', 'eccentric drive'))
     """
-    lines = tuple(line[:_LONGEST_ENTRY] for line in lines)
+    lines = tuple(line[:_MAX_ENTRY] for line in lines)
     entries = (_TEXT.match(line.strip()) for line in lines)
     found = [(match["key"], match["text"].rstrip('"; ,')) for match in entries if match]
     alone = (_UNIT_ALONE.match(line.strip()) for line in lines)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SHORT = 1 << 16  # most values of a cached group
-_MOST = 1 << 22  # most values cached by a process
+_MAX_CACHED = 1 << 22  # most values cached by a process
 
 
 class KeptReading:
@@ -38,7 +38,7 @@ class KeptReading:
                 self._files[identity] = read_short(path, SHORT)
                 self._values += _size(self._files[identity])
             self._files.move_to_end(identity)
-            while self._values > _MOST and len(self._files) > 1:
+            while self._values > _MAX_CACHED and len(self._files) > 1:
                 self._values -= _size(self._files.popitem(last=False)[1])
             return self._files[identity]
 

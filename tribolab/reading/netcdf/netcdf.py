@@ -19,7 +19,7 @@ from tribolab.reading.netcdf.attributes import decoded
 from tribolab.reading.netcdf.seal import check_seal, seal, unseal
 from tribolab.reading.netcdf.storage import write_into
 from tribolab.reading.netcdf.stored import read_plain
-from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.opening import isolated, report_damage
 from tribolab.reading.raw.source import check_regular
 
 if TYPE_CHECKING:
@@ -274,7 +274,7 @@ def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
     # imported late: netCDF4 loads slowly
     import netCDF4
 
-    with damage_told(path, "netCDF file"):
+    with report_damage(path, "netCDF file"):
         with _plain_name(path) as plain, netCDF4.Dataset(plain) as opened:
             yield opened
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import netCDF4
 
 CHUNK = 65_536  # samples; a default chunk would be the whole array
-_LONG = 1024  # values; shorter arrays are not compressed
+_MIN_COMPRESSED = 1024  # values; shorter arrays are not compressed
 _COMPRESSION = 1  # higher levels do not reduce noise
 _WORTH = 0.95  # compressed share of the bytes above which compression is not worthwhile
 _BLOCKS, _BLOCK = 4, 1024  # number and length of the samples for choosing a filter
@@ -128,7 +128,7 @@ def storage(values: np.ndarray) -> Arguments:
     >>> storage(volt[:100])
     {}
     """
-    if values.dtype.kind not in "fiu" or not values.ndim or values.size <= _LONG:
+    if values.dtype.kind not in "fiu" or not values.ndim or values.size <= _MIN_COMPRESSED:
         return {}
     layout: Arguments = {"chunksizes": tuple(min(n, CHUNK) for n in values.shape)}
     sample = _sample(values)

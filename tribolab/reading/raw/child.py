@@ -19,7 +19,7 @@ from tribolab.core.errors import TribolabError
 from tribolab.reading.raw import limits, opening
 from tribolab.reading.raw.child_results import LENGTH, packed_error, write_result
 from tribolab.reading.raw.hdf5_safety import refuse_outside
-from tribolab.reading.raw.opening import damage_told
+from tribolab.reading.raw.opening import report_damage
 from tribolab.reading.raw.scratch import remove_scratch
 from tribolab.reading.raw.server import Ended, Job
 from tribolab.reading.raw.unpacked import ZIP
@@ -145,12 +145,12 @@ def _work(job: Job) -> int:
 def _call_checked(function: Callable[..., Any], job: Job) -> Any:
     """Call a reading function on a file after safety checks."""
     path, is_zip = Path(job.arguments[0]), False
-    with damage_told(path, "file"), path.open("rb") as file:
+    with report_damage(path, "file"), path.open("rb") as file:
         is_zip = file.read(len(ZIP)) == ZIP
     if is_zip:
-        with damage_told(path, "zip archive"):
+        with report_damage(path, "zip archive"):
             refuse_bomb(path)
-    with damage_told(path, "HDF5 or netCDF file"):  # a zip archive can also be HDF5
+    with report_damage(path, "HDF5 or netCDF file"):  # a zip archive can also be HDF5
         refuse_outside(path)
     return function(*job.arguments, **job.keywords)
 

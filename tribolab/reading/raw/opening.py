@@ -162,7 +162,7 @@ def _in_child(
                 _REFUSED[*asked, scope] = raised, time.monotonic()
             if isinstance(raised, _HANDLED):
                 raise raised
-            with damage_told(path, "file"):
+            with report_damage(path, "file"):
                 raise raised
     finally:
         os.close(handle)
@@ -207,7 +207,7 @@ def _ending(ended: Ended) -> str:
 
 
 @contextlib.contextmanager
-def damage_told(path: Path, what: str) -> Iterator[None]:
+def report_damage(path: Path, what: str) -> Iterator[None]:
     """Convert any exception of a library on a damaged file to one error.
 
     Parameters

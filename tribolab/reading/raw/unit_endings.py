@@ -26,7 +26,13 @@ _MEASURED = (
     "A",
 )
 _WEIGHTS = frozenset(("g", "kg", "gf", "kgf", "kp", "p"))
-_SMALL = {"hz": "Hz", "khz": "kHz", "n": "N", "mn": "mN", "kn": "kN"}  # lower-case units in keys
+_LOWER_CASE_UNITS = {
+    "hz": "Hz",
+    "khz": "kHz",
+    "n": "N",
+    "mn": "mN",
+    "kn": "kN",
+}  # lower-case units in keys
 _NO_UNIT = frozenset(("percent", "%", "-", "1"))
 
 
@@ -60,7 +66,7 @@ def without_unit(key: str) -> tuple[str, str]:
     words = key.split("_")
     for count, mark in ((2, "/"), (1, "")):
         unit = mark.join(words[-count:])
-        unit = _SMALL.get(unit, unit)
+        unit = _LOWER_CASE_UNITS.get(unit, unit)
         if len(words) > count and is_unit(unit):
             return "_".join(words[:-count]), unit
     return key, ""

@@ -20,10 +20,10 @@ from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are also archives
 _CHUNK = 1 << 20
-_MOST_DEFLATED = 1032  # highest compression ratio of zlib (zlib.net/zlib_tech.html)
+_MAX_DEFLATED = 1032  # highest compression ratio of zlib (zlib.net/zlib_tech.html)
 _STATED = 4  # bytes at the end of a gzip file that state its unpacked size, modulo 4 GiB
-_LONGEST_README = 1 << 16  # bytes
-_LONGEST_LETTER = 3  # bytes of an incomplete character at the end of what was read
+_MAX_README = 1 << 16  # bytes
+_MAX_LETTER = 3  # bytes of an incomplete character at the end of what was read
 # files in an archive besides data: readmes, pictures, system files
 _README = re.compile(
     r"(?:^|/)[^/]*(?:read[ _-]?me|lies[ _-]?mich|l[ie]s?ez[ _-]?moi|leeme|leggimi|leia[ _-]?me|info"
@@ -88,7 +88,7 @@ def of_the_file(error: ReadError, inside: Path, path: Path) -> ReadError:
     return ReadError(what, where=renamed(error.where), function=error.function, cure=cure)
 
 
-def holds_arrays(path: Path) -> bool:
+def has_arrays(path: Path) -> bool:
     """Whether an archive contains only NumPy arrays."""
     names = _names(path)
     return bool(names) and all(name.endswith(".npy") for name in names)
@@ -118,7 +118,7 @@ def _members(path: Path) -> list[str] | None:
         return None
     if any(name.split("/")[-1] in _OFFICE for name in names):
         return None
-    if holds_arrays(path):
+    if has_arrays(path):
         return None  # an archive of NumPy arrays is read as a whole
     for part in parts:
         _refuse_outside(path, part)
@@ -148,7 +148,7 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
             with path.open("rb") as file:
                 file.seek(-_STATED, 2)
                 stated = int.from_bytes(file.read(), "little")
-            if stated > _MOST_DEFLATED * size:
+            if stated > _MAX_DEFLATED * size:
                 raise zlib.error("its last bytes state more than it can hold")
             _refuse_larger(stated, size, path)
             with gzip.open(path) as source:
@@ -183,7 +183,7 @@ def _readme_text(archive: zipfile.ZipFile, names: list[str], first: bytes) -> by
         return b""
     texts = []
     for name in names:
-        if not _README.search(name) or archive.getinfo(name).file_size > _LONGEST_README:
+        if not _README.search(name) or archive.getinfo(name).file_size > _MAX_README:
             continue
         text = archive.read(name).removeprefix(b"\xef\xbb\xbf")
         if b"\0" not in text and _is_utf8(text) and text.strip():
@@ -193,7 +193,7 @@ def _readme_text(archive: zipfile.ZipFile, names: list[str], first: bytes) -> by
 
 def _is_utf8(text: bytes) -> bool:
     try:
-        text[: -_LONGEST_LETTER if len(text) == _CHUNK else None].decode()
+        text[: -_MAX_LETTER if len(text) == _CHUNK else None].decode()
     except UnicodeDecodeError:
         return False
     return True

@@ -9,7 +9,7 @@ from tribolab.core.untyped import Json
 
 _APART = 0.02  # relative; both come from the same readings, rounded to three digits
 _LOADED = 0.1  # share of the largest load
-_FEW = 5  # rows needed
+_MIN_ROWS = 5  # rows needed
 _FORCES = ("friction_force", "normal_force")
 
 
@@ -34,7 +34,7 @@ def keep_forces_that_agree(columns: dict[str, np.ndarray], attrs: Json) -> None:
     stated = np.abs(columns["friction_coefficient"]) * load
     sound = np.isfinite(friction) & np.isfinite(stated)
     sound &= (stated > 0) & (load > _LOADED * np.nanmax(load, initial=0.0))
-    if np.count_nonzero(sound) < _FEW:
+    if np.count_nonzero(sound) < _MIN_ROWS:
         return
     ratio = float(median(friction[sound] / stated[sound]))
     attrs["ratio_to_stated_coefficient"] = ratio

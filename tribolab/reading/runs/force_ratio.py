@@ -9,7 +9,7 @@ from tribolab.arrays.medians import median
 LARGEST = 10.0  # soft rubber on glass reaches 4, gels and gecko feet at light loads more
 SMALLEST = 2e-4  # superlubric contacts reach 1e-3 and slightly less
 _LOADED = 0.5  # share of the largest load
-_FEW = 20  # rows under load needed
+_MIN_LOADED_ROWS = 20  # rows under load needed
 
 
 def doubt_about_coefficient(recorded: np.ndarray) -> str:
@@ -28,7 +28,7 @@ def doubt_about_coefficient(recorded: np.ndarray) -> str:
     'the friction coefficient is 30: is it written in percent?'
     """
     sound = np.abs(recorded[np.isfinite(recorded)])
-    if sound.size < _FEW:
+    if sound.size < _MIN_LOADED_ROWS:
         return ""
     size = float(np.percentile(sound, 75))
     told = f"the friction coefficient is {size:.3g}"
@@ -51,11 +51,11 @@ def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
     'the friction force is 400 times the normal force: are the two swapped, or a unit wrong?'
     """
     sound = np.isfinite(friction) & np.isfinite(normal)
-    if sound.sum() < _FEW:
+    if sound.sum() < _MIN_LOADED_ROWS:
         return ""
     friction, normal = np.abs(friction[sound]), np.abs(normal[sound])
     loaded = normal > _LOADED * normal.max()
-    if loaded.sum() < _FEW:
+    if loaded.sum() < _MIN_LOADED_ROWS:
         return ""
     # a reciprocating drive passes through zero, so the median of the forces is not their size
     ratio = float(np.percentile(friction[loaded], 75) / median(normal[loaded]))

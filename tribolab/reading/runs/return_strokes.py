@@ -11,7 +11,7 @@ _MORE = 3  # rows of margin
 _SLOW = 0.25  # share of the usual speed on a return stroke below which it is at rest
 
 
-def goes_back(position: np.ndarray) -> np.ndarray:
+def has_return_strokes(position: np.ndarray) -> np.ndarray:
     """Return a mask of rows in strokes opposite to the first one (time).
 
     Parameters
@@ -28,7 +28,7 @@ def goes_back(position: np.ndarray) -> np.ndarray:
     --------
     >>> way = np.concatenate([np.zeros(10), np.arange(20), np.full(10, 19), 19 - np.arange(20.0)])
     >>> way = np.repeat(way, 3)
-    >>> back = goes_back(way)
+    >>> back = has_return_strokes(way)
     >>> back[:110].any(), back[125:175].all()
     (np.False_, np.True_)
     """

@@ -12,7 +12,7 @@ _AT_REST = 0.3  # share of the usual amplitude below which a cycle does not slid
 _WHOLE = 0.85  # share above which a cycle next to a rest slides completely
 _OTHER = 0.1  # relative tolerance of the drive's frequency
 _AS_LOUD = 0.5  # share of the usual variance above which a cycle is not at rest
-_FEW = 0.05  # share of the sliding cycles
+_SMALL_SHARE = 0.05  # share of the sliding cycles
 FEWEST_CYCLES = 3
 DENSEST = 8  # samples per cycle, at least: of fewer, only the mean speed is known
 
@@ -118,5 +118,5 @@ def velocity_of_strokes(
         else 2 * own * stroke * np.sign(np.cos(angle))
     )
     moving = np.append(slides, slides[-1])[np.minimum(cycle, cycles)]
-    is_unlike = np.count_nonzero(loud) > max(2, _FEW * np.count_nonzero(slides))
+    is_unlike = np.count_nonzero(loud) > max(2, _SMALL_SHARE * np.count_nonzero(slides))
     return StrokeVelocity(np.where(moving, pace, 0.0), float(own), unlike if is_unlike else 0.0)

@@ -16,8 +16,8 @@ from tribolab.arrays.medians import median
 from tribolab.core.untyped import Json
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 
-_MOST = 0.6  # largest share of rows with a value of a slower signal
-_FEW = 8  # values needed to determine a rate
+_MAX_SHARE = 0.6  # largest share of rows with a value of a slower signal
+_MIN_VALUES = 8  # values needed to determine a rate
 _EVEN = 2.0  # most of the usual distance for 95 % of the distances
 _GAP = 3.0  # multiple of the usual distance above which a gap is not bridged
 
@@ -96,7 +96,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
 def _rows(values: np.ndarray) -> np.ndarray | None:
     """Return the rows with a value, if a signal has one at regular distances; else None."""
     count = sum(int(np.isfinite(values[a:b]).sum()) for a, b in pieces(0, values.size))
-    if not _FEW <= count <= _MOST * values.size:
+    if not _MIN_VALUES <= count <= _MAX_SHARE * values.size:
         return None
     rows = np.flatnonzero(np.isfinite(values))
     steps = np.diff(rows)

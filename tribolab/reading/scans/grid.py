@@ -10,7 +10,7 @@ from tribolab.core.errors import ReadError
 
 _JITTER = 0.01  # largest deviation from an even grid, in pitches, that is ignored
 _LARGEST = 1e4  # m
-_SMALLEST = 1e-15  # m, about the size of a nucleus
+_MIN_SPACING = 1e-15  # m, about the size of a nucleus
 _FILLED = 0.5  # share of grid points that must have heights
 _CLOUD = (
     "of points that lie freely, as on circles, write each line as a profile (distance, height), or "
@@ -56,7 +56,7 @@ def even(
     count = np.arange(x.size, dtype=float)
     if not max(abs(x[0]), abs(x[-1]), pitch, *np.abs([x.min(), x.max()])) < _LARGEST:
         raise ReadError(f"{where}: x reaches {np.abs(x).max():.3g} m, no profile is so long")
-    if x[-1] - x[0] < _SMALLEST:
+    if x[-1] - x[0] < _MIN_SPACING:
         raise ReadError(f"{where}: x spans {x[-1] - x[0]:.3g} m, no profile is so short")
     ideal = x[0] + pitch * count
     unevenness = float(np.abs(ideal - x).max()) / pitch

@@ -29,7 +29,7 @@ from tribolab.reading.scans.unit_words import (
 from tribolab.units.spellings import unit_of_length
 
 _MAX_LINE = 300  # most characters of a line
-_MOST_NUMBERS = 2  # in an entry; more are a date, a time, or a row of results
+_MAX_NUMBERS = 2  # in an entry; more are a date, a time, or a row of results
 _NUMBER = r"(?<![\w.])[-+]?\d+(?:[{marks}]\d+)?(?:[eE][-+]?\d+)?"
 _CELL_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 _BEHIND = re.compile(r"[\s,;]*[(\[]?(?P<unit>[^\W\d_]+)?(?P<per>\s*(?:/|per)\s*[^\W\d_]+)?")
@@ -182,7 +182,7 @@ def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:
     """Return name and numbers of a line; None without a number or with many."""
     number = _NUMBER.format(marks="." if commas_part else ".,")
     found = list(re.finditer(number, text))
-    if not found or len(found) > _MOST_NUMBERS:
+    if not found or len(found) > _MAX_NUMBERS:
         return None
     key = text[: found[0].start()]
     behind = [_BEHIND.match(text, match.end()) for match in found]

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
-_SAME = 2e-7  # relative precision of a single-precision number
+_SINGLE_PRECISION = 2e-7  # relative precision of a single-precision number
 _TWICE = 2
 _PARAMETER = re.compile(r"\b[RS]\w{1,2}\b")  # roughness parameters: Ra, Sq
 
@@ -40,7 +40,7 @@ def take_stated(
     """
     taken = []
     for name, number in stated:
-        here = np.abs(values - number) <= _SAME * abs(number)
+        here = np.abs(values - number) <= _SINGLE_PRECISION * abs(number)
         count = int(here.sum())
         if not count or not _is_mark(values, here, name, number):
             continue

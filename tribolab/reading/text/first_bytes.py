@@ -17,7 +17,7 @@ from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.readers import answers, installed_readers
 from tribolab.reading.raw.source import Identity, check_regular, identity_of
-from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
+from tribolab.reading.raw.unpacked import ZIP, has_arrays, is_workbook, unpacked
 from tribolab.reading.results_table import find_other_test, find_results_table
 from tribolab.reading.text.endless import refuse_endless
 
@@ -36,7 +36,10 @@ _MAGIC = {
     b"\xd0\xcf\x11\xe0": "excel",
 }
 _JSON = re.compile(rb'(?:\xef\xbb\xbf)?\s*(?:\{\s*"[^"]*"\s*:|\[\s*[\[{])')
-_SAME = {("netcdf", "hdf5"), ("text", "binary")}  # other formats that a file may match
+_COMPATIBLE_FORMATS = {
+    ("netcdf", "hdf5"),
+    ("text", "binary"),
+}  # other formats that a file may match
 _FOREIGN = {
     b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",
     b"%PDF": "a PDF",
@@ -44,7 +47,7 @@ _FOREIGN = {
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _WIDE_HEAD = 4096  # bytes sufficient to recognise wide characters
-_FEWEST_BYTES = 64
+_MIN_BYTES = 64
 
 
 class File(NamedTuple):
@@ -132,7 +135,7 @@ def wide_encoding(head: bytes) -> str:
     if head.startswith(_UTF16):
         return "utf-16"
     first = head[:_WIDE_HEAD]
-    if len(first) < _FEWEST_BYTES or b"\0" not in first:
+    if len(first) < _MIN_BYTES or b"\0" not in first:
         return ""
     for name, zeros, letters in (
         ("utf-16-le", first[1::2], first[::2]),
@@ -152,10 +155,13 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     >>> fits_format("netcdf", "hdf5"), fits_format("text", "mat")
     (True, False)
     """
-    return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
+    return (
+        format_of_file == format_of_dialect
+        or (format_of_file, format_of_dialect) in _COMPATIBLE_FORMATS
+    )
 
 
-_MOST_JSON = 1 << 28  # bytes; it is read as a whole
+_MAX_JSON = 1 << 28  # bytes; it is read as a whole
 
 
 def _is_json(head: bytes) -> bool:
@@ -176,7 +182,7 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             return name
     if (head.startswith(ZIP) and is_workbook(path)) or is_xml_workbook(head):
         return "excel"
-    if head.startswith(ZIP) and holds_arrays(path):
+    if head.startswith(ZIP) and has_arrays(path):
         return "npz"
     if binary and b"\0" in head:
         return "binary"
@@ -207,16 +213,16 @@ def _holds_columns(path: Path) -> bool:
         state = path.stat()
     except OSError:
         return False
-    return state.st_size <= _MOST_JSON and _holds_tables(path, state.st_size, state.st_mtime_ns)
+    return state.st_size <= _MAX_JSON and _holds_tables(path, state.st_size, state.st_mtime_ns)
 
 
 @functools.lru_cache(maxsize=16)  # a file is inspected more than once
 def _holds_tables(path: Path, size: int, changed: int) -> bool:
     # imported late for a quick start
-    from tribolab.reading.raw.containers.json_tables import holds_tables
+    from tribolab.reading.raw.containers.json_tables import has_tables
 
     try:
-        return holds_tables(path.read_text("utf-8-sig"))
+        return has_tables(path.read_text("utf-8-sig"))
     except (OSError, UnicodeDecodeError):
         return False
 

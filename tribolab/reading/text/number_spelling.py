@@ -19,7 +19,7 @@ _ROW_WITH_UNITS = re.compile(
     re.MULTILINE,
 )
 _CELL = re.compile(rf"({_VALUE})[^\S\n]?((?:[^\W\d_\n]|°|%)[^\s;,\d]{{0,7}})[^\S\n]*")
-_FEWEST_ROWS = 3
+_MIN_ROWS = 3
 _LOOKED_AT = 1 << 14  # characters inspected
 _ROW_IN_QUOTES = re.compile(
     r'(?:^|,)[^\S\n]*"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"[^\S\n]*(?:,|$)', re.MULTILINE
@@ -34,7 +34,7 @@ def is_unusual(text: str) -> bool:
     """
     if _MINUS in text and _TRUE_MINUS.search(text):
         return True
-    if len(_ROW_WITH_UNITS.findall(text[:_LOOKED_AT])) >= _FEWEST_ROWS:
+    if len(_ROW_WITH_UNITS.findall(text[:_LOOKED_AT])) >= _MIN_ROWS:
         return True
     exponents = any(part in text for part in ("D-", "D+", "d-", "d+"))
     return exponents and _FORTRAN.search(text) is not None

@@ -61,7 +61,7 @@ class ModeRecord:
     moves: bool = False
 
 
-_MOST_NAMED = 3  # runs
+_MAX_NAMED = 3  # runs
 
 
 def condition(curve: CurveOutcome | ModelOutcome) -> str:
@@ -74,7 +74,7 @@ def condition(curve: CurveOutcome | ModelOutcome) -> str:
         words += f" {curve.medium}" if curve.medium == "dry" else f" in {curve.medium}"
     if not words.strip():
         runs = curve.run_names if isinstance(curve, CurveOutcome) else ()
-        words = ", ".join(runs) if 0 < len(runs) <= _MOST_NAMED else curve.name
+        words = ", ".join(runs) if 0 < len(runs) <= _MAX_NAMED else curve.name
     if curve.normal_force is not None:
         words += f" at {curve.normal_force:g} N"
     return words.strip()

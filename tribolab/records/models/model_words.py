@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 _UNLIKELY = 0.05  # p value below which the order of the residuals' signs is significant
 _LARGE = 0.10  # share of the measured friction that any reader notices
-_CLOSE = 0.02  # share of the curve's peak
-_FAR = 0.3
+_SMALL_DIFFERENCE = 0.02  # share of the curve's peak
+_LARGE_DIFFERENCE = 0.3
 _MAX_RATIO = 2.0  # as a factor; beyond it the model does not describe the curve
 _MAX_SIGMAS = 3.0  # standard errors
 _NOT_DESCRIBED = "the model does not describe this curve"
@@ -146,12 +146,12 @@ def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
         return (
             "within the errors, but the residuals vary systematically: the shape differs slightly"
         )
-    if largest > _FAR:
+    if largest > _LARGE_DIFFERENCE:
         return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of the peak friction"
     if factor > _MAX_RATIO:
         return f"{_NOT_DESCRIBED}: off by up to a factor of {number(factor, 2)}"
     trend = " and vary systematically with speed" if ordered else ""
     return (
-        f"the model fits to within {percent(max(largest, _CLOSE))} of the peak friction; the "
-        f"residuals exceed the error bars{trend}"
+        f"the model fits to within {percent(max(largest, _SMALL_DIFFERENCE))} of the peak friction; "
+        f"the residuals exceed the error bars{trend}"
     )

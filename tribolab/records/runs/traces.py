@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
 _LABELS = {**_MOTION, "inertial_force": "inertia"}
-_MOST_SPANS = 400
+_MAX_SPANS = 400
 _FINE_CHARACTERS = 4.0  # upper estimate per point of two noisy signals, compressed
 _FEWER = 1.3  # exponent of the share of points that fits: fewer points compress worse
 _FINEST = 24_000  # points of a signal available for zooming
 _POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
-_BYTES, _FEW = 1.25e6, 32  # of all traces together, up to so many runs
+_BYTES, _FULL_SIZE_RUNS = 1.25e6, 32  # of all traces together, up to so many runs
 _COARSE_SHARE = 0.3  # share for the points shown on opening
 
 
@@ -91,7 +91,7 @@ def trace_size(runs: int) -> tuple[int, int]:
     """
     runs = 1 << max(runs - 1, 0).bit_length()
     # with many runs the page grows, but more slowly than their number
-    each = _BYTES * max(1.0, (runs / _FEW) ** 0.5) / runs
+    each = _BYTES * max(1.0, (runs / _FULL_SIZE_RUNS) ** 0.5) / runs
     points = _COARSE_SHARE * each / _POINT_BYTES
     return int(np.clip(points, 300, 2000)), int((1 - _COARSE_SHARE) * each)
 
@@ -295,7 +295,7 @@ def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
                         checks=() if tests is None else _checks(run, name, tests[part]),
                     )
                 )
-    longest = sorted(spans, key=lambda span: span.start_s - span.stop_s)[:_MOST_SPANS]
+    longest = sorted(spans, key=lambda span: span.start_s - span.stop_s)[:_MAX_SPANS]
     return sorted(longest, key=lambda span: span.start_s)
 
 

@@ -10,7 +10,7 @@ from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import NORMAL, error_text
 
 _BEND = 0.1  # share of Pq below which a circle is negligible
-_MOST = 5  # surfaces that are listed
+_MAX_LISTED = 5  # surfaces that are listed
 FORM = "form"  # topic of a finding on form that may be waviness
 _FORMS = {"polynomial": "polynomial of degree 2"}
 
@@ -85,8 +85,8 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
             continue
         told.setdefault(heading, []).append(f"{name} {said}")
     return [
-        f"{what}: {', '.join(names[:_MOST])}"
-        + (f" and {len(names) - _MOST} more" if len(names) > _MOST else "")
+        f"{what}: {', '.join(names[:_MAX_LISTED])}"
+        + (f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else "")
         for what, names in told.items()
     ]
 

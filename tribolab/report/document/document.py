@@ -250,12 +250,12 @@ def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
 
 def brief_run(run: Mapping[str, Any]) -> Json:
     """Return the short entries of a run, for the table of runs."""
-    brief = {key: value for key, value in run.items() if key not in _LONG}
+    brief = {key: value for key, value in run.items() if key not in _LONG_LISTS}
     objections = [row for row in run["checks"] if row["status"] in ("suspect", "fail", "error")]
     return brief | {"checks": objections}
 
 
-_LONG = ("segments", "flagged", "history", "signals", "files", "checks", "columns_not_used")
+_LONG_LISTS = ("segments", "flagged", "history", "signals", "files", "checks", "columns_not_used")
 
 
 def _campaign(campaign: Campaign) -> CampaignFile:

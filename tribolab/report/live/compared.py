@@ -13,10 +13,10 @@ from tribolab.records.parts import number_of
 from tribolab.records.wording import error_text
 from tribolab.report.live.curves import (
     FrictionOverSpeed,
+    distinguish_media,
     labels_of,
     system_name,
     systems,
-    told_apart,
 )
 from tribolab.report.live.points import RunPoint, of_curve
 from tribolab.report.plain import plain_speed
@@ -60,7 +60,7 @@ def _normalised_curves(known: FrictionOverSpeed, colours: Mapping[str, int]) -> 
         title="At which speed friction falls",
         note="Each curve over its own highest friction, so that all plateaus are "
         "at 1. Bars: U95 of the point. "
-        + told_apart([curve.outcome.medium for curve in known.curves], "filled", "open"),
+        + distinguish_media([curve.outcome.medium for curve in known.curves], "filled", "open"),
         alt=f"Friction relative to its highest value over sliding speed of "
         f"{many(len(series), 'curve')}.",
         panels=(Panel(SPEED_AXIS, _SHARE),),
@@ -125,7 +125,7 @@ def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> FigureSp
         title="Every run of the repeats",
         note="A point for each run and speed. Bars: U95 within the run, without "
         "the scatter between runs. "
-        + told_apart([curve.medium for curve in series], "filled", "open"),
+        + distinguish_media([curve.medium for curve in series], "filled", "open"),
         alt=f"Friction coefficient over sliding speed of {many(len(series), 'run')}, "
         f"µ {span(mu for drawn in series for mu in drawn.y)}.",
         panels=(Panel(SPEED_AXIS, FRICTION_AXIS),),

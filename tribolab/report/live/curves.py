@@ -18,7 +18,7 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.wording import error_text
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.points import RunPoint, at_speed, of_curve, point_error, told_point
+from tribolab.report.live.points import RunPoint, at_speed, describe_point, of_curve, point_error
 from tribolab.report.live.record import Band
 from tribolab.report.plain import listed, plain_speed
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
 _ONE_RATIO = 1.1  # largest ratio of slide-roll ratios of curves on one entrainment-speed axis
-_MOST_NAMED = 3  # runs named in a title
+_MAX_NAMED = 3  # runs named in a title
 _AS_FOUND = "without decisions by hand"
 _SPEED, _ROLLING, _MU = "sliding_speed_m_s", "rolling_speed_m_s", "friction_coefficient"  # columns
 
@@ -71,10 +71,10 @@ def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
     named = ", ".join(filter(None, (surface, medium)))
     if named or not runs:
         return named or "runs"
-    return listed(list(runs)) if len(runs) <= _MOST_NAMED else f"{len(runs)} runs"
+    return listed(list(runs)) if len(runs) <= _MAX_NAMED else f"{len(runs)} runs"
 
 
-def told_apart(media: Collection[str], in_liquid: str, dry: str) -> str:
+def distinguish_media(media: Collection[str], in_liquid: str, dry: str) -> str:
     """Return the legend for dry and wet data; "" if a figure shows only one of them.
 
     Parameters
@@ -86,8 +86,10 @@ def told_apart(media: Collection[str], in_liquid: str, dry: str) -> str:
 
     Examples
     --------
-    >>> told_apart(["glycerol", "dry"], "filled", "open"), told_apart(["dry"], "full", "dashed")
-    ('Filled: in a liquid; open: dry.', '')
+    >>> distinguish_media(["glycerol", "dry"], "filled", "open")
+    'Filled: in a liquid; open: dry.'
+    >>> distinguish_media(["dry"], "full", "dashed")
+    ''
     """
     wet = [medium for medium in media if not is_dry(medium)]
     if not wet or len(wet) == len(media):
@@ -218,7 +220,7 @@ def _measured(known: FrictionOverSpeed, curve: CurveRecord, label: str) -> xr.Da
     for row in rows:
         points = at_speed(every, float(row[_SPEED] or 0.0))
         error = point_error(row, points)
-        words.append(told_point(row, error, points, _first_component(curve.uncertainty_says)))
+        words.append(describe_point(row, error, points, _first_component(curve.uncertainty_says)))
         targets.append(points[0].run if points else curve.outcome.run_names[0])
     return _dataset(outcome, rows, label, hover=words, link=targets)
 

@@ -11,7 +11,7 @@ from tribolab.report.live.points import point_error
 from tribolab.report.plain import plain_speed
 
 _MIN_LOADS = 2
-_SAME = 1.1  # largest ratio of speeds that count as one, as for measured curves
+_MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
 _LOAD, _MU = Axis("normal force", "N"), Axis("friction coefficient µ")
 
 
@@ -71,6 +71,10 @@ def over_load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
 def _at(points: tuple[Row, ...], speed: float) -> Row | None:
     for row in points:
         v = number_of(row, "sliding_speed_m_s")
-        if v and speed / _SAME <= v <= speed * _SAME and row["friction_coefficient"] is not None:
+        if (
+            v
+            and speed / _MAX_SPEED_RATIO <= v <= speed * _MAX_SPEED_RATIO
+            and row["friction_coefficient"] is not None
+        ):
             return row
     return None

@@ -17,7 +17,7 @@ from tribolab.records.wording import error_text
 from tribolab.report.plain import plain_speed
 
 _NAMED = 4  # runs named at a point
-_SAME = 1.1  # largest ratio of speeds that count as one, as for measured curves
+_MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
 
 
 class RunPoint(NamedTuple):
@@ -125,7 +125,11 @@ def of_curve(points: Iterable[RunPoint], load: float | None) -> list[RunPoint]:
 
 def at_speed(points: Sequence[RunPoint], speed: float) -> list[RunPoint]:
     """Return the points at one speed of a curve."""
-    return [point for point in points if speed / _SAME <= point.speed <= speed * _SAME]
+    return [
+        point
+        for point in points
+        if speed / _MAX_SPEED_RATIO <= point.speed <= speed * _MAX_SPEED_RATIO
+    ]
 
 
 def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointError:
@@ -160,7 +164,7 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     return PointError(row.get("friction_coefficient_U95"), holds, within, scatter)
 
 
-def told_point(
+def describe_point(
     row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint], says: str = ""
 ) -> str:
     """Return the tooltip of a point of a curve, one line for each item.

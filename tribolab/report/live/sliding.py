@@ -29,7 +29,7 @@ from tribolab.figures.subjects.slip import cumulative, waveform_map
 from tribolab.figures.subjects.slip_spectra import power_levels
 from tribolab.records.models.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
-from tribolab.report.live.curves import labels_of, system_name, told_apart
+from tribolab.report.live.curves import distinguish_media, labels_of, system_name
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import Slow, lowest_loads
 
@@ -264,7 +264,7 @@ def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
         for looked, beside in (("full", "dotted"), ("dashed", "dots and dashes"))
     )
     media = _media(opened)
-    if not told_apart(media, "", ""):
+    if not distinguish_media(media, "", ""):
         alone = dry if media and is_dry(media[0]) else wet
         return f"{alone[:1].upper()}{alone[1:]}."
     unnamed = " or a medium that is not named" if "" in media else ""
@@ -336,7 +336,7 @@ def _events(opened: Sequence[_Opened]) -> FigureSpec:
         "sliding",
         "How far friction drops",
         "Share of the drops, at all speeds of a run, that are smaller than a value. "
-        + told_apart(_media(opened), "full", "dashed"),
+        + distinguish_media(_media(opened), "full", "dashed"),
         "Cumulative distribution of the drops of friction.",
         (Panel(Axis("drop of µ", log=True), Axis("share of drops below")),),
         tuple(series),
@@ -363,7 +363,7 @@ def _spectrogram(opened: Sequence[_Opened]) -> FigureSpec:
                 None,
                 (
                     "Only what is at least twice the noise is drawn.",
-                    told_apart(_media(opened), "filled", "open"),
+                    distinguish_media(_media(opened), "filled", "open"),
                     "Switch conditions on and off in the legend." if len(series) > 1 else "",
                 ),
             )

@@ -19,7 +19,7 @@ _WORST_FIRST: tuple[str, ...] = ("failed", "rejected", "error", "rejected by han
 _WORST_FIRST += (_ODD, "suspect", "accepted")
 _ALL, _STEADY = "all speeds", "steady"
 _DIGITS = 6  # digits of a deviation, so that those of two repeats are equal
-_SAME = 1.1  # largest ratio of speeds that count as one, as for measured curves
+_MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
 
 
 class ListedRun(NamedTuple):
@@ -106,7 +106,7 @@ def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
     """Return the distinct speeds of all runs; neighbours count as one."""
     speeds: list[float] = []
     for speed in sorted({point.speed for of_run in points.values() for point in of_run}):
-        if speed > (_SAME * speeds[-1] if speeds else 0):
+        if speed > (_MAX_SPEED_RATIO * speeds[-1] if speeds else 0):
             speeds.append(speed)
     return speeds
 

@@ -27,7 +27,7 @@ from tribolab.surface.spectra.reliability import trusted_band
 from tribolab.surface.spectra.smooth_law import fitted_law
 from tribolab.units.stamping import stamp
 
-_FEWEST_POINTS = 64
+_MIN_POINTS = 64
 
 
 def psd_1d(
@@ -266,9 +266,9 @@ def _prepare_scans(scans: xr.Dataset, form: str) -> xr.Dataset:
             f"height has the dimensions {scans.height.dims}; one scan each", function="psd_1d"
         )
     points = scans.sizes["x"]
-    if points < _FEWEST_POINTS:
+    if points < _MIN_POINTS:
         raise AnalysisError(
-            f"{points} points are too few for a spectrum; {_FEWEST_POINTS} are the least",
+            f"{points} points are too few for a spectrum; {_MIN_POINTS} are the least",
             function="psd_1d",
         )
     if form == "auto":

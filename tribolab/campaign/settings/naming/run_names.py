@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-_LONGEST_NAME = 100
+_MAX_NAME = 100
 
 
 def unique_names(groups: Iterable[Iterable[Path]]) -> list[str]:
@@ -70,7 +70,7 @@ def safe_name(name: str) -> str:
     """
     plain = unicodedata.normalize("NFKD", name.replace("µ", "u").replace("μ", "u"))
     plain = plain.encode("ascii", "ignore").decode()
-    plain = re.sub(r"[^A-Za-z0-9._-]+", "_", plain).strip("._")[:_LONGEST_NAME] or "run"
+    plain = re.sub(r"[^A-Za-z0-9._-]+", "_", plain).strip("._")[:_MAX_NAME] or "run"
     # "curve_" and "surface_" begin what other results are called; the rest are devices on Windows
     clash = re.match(r"(?i)(curve_|surface_|(con|prn|aux|nul|com\d|lpt\d)(\.|$))", plain)
     return f"run_{plain}" if clash else plain

@@ -8,7 +8,7 @@ import pyarrow as pa
 from tribolab.arrays.scratch import is_long, let_go, room
 from tribolab.reading.dialect.columns import ReadColumn
 
-_FEW = 5  # lines needed to recognise that every second one is empty
+_MIN_LINES = 5  # lines needed to recognise that every second one is empty
 
 
 class GrowingColumns:
@@ -86,7 +86,7 @@ def of_one_column(values: np.ndarray) -> np.ndarray:
     if not known.size:
         return values
     inner = values[known[0] : known[-1] + 1]
-    is_double = inner.size > _FEW and inner.size == 2 * known.size - 1
+    is_double = inner.size > _MIN_LINES and inner.size == 2 * known.size - 1
     return inner[::2] if is_double and np.isfinite(inner[::2]).all() else inner
 
 

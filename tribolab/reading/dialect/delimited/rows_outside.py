@@ -8,7 +8,7 @@ from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.delimited.tables import RawText
 from tribolab.reading.dialect.model import Dialect
 
-_LONGEST_FOOT = 1 << 16  # bytes
+_MAX_FOOT = 1 << 16  # bytes
 # line that begins with a number and contains no words, times of day or dates
 _NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTILINE)
 
@@ -61,7 +61,7 @@ def foot_of(raw: RawText, dialect: Dialect) -> str:
     stop = raw.tables[-1].stop
     if not stop < size:
         return ""
-    text = _bytes(raw, max(stop, size - _LONGEST_FOOT), size)
+    text = _bytes(raw, max(stop, size - _MAX_FOOT), size)
     return text.decode(dialect.text.encoding, errors="replace").replace("\r", "\n")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.containers.settings import plain, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
-from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.opening import isolated, report_damage
 
 _OF_LIBRARIES = (b"pandas", b"ARROW:schema", b"PANDAS_ATTRS")
 
@@ -36,7 +36,7 @@ def read_arrow(path: Path) -> RawFile:
 
     with path.open("rb") as file:
         form = "parquet" if file.read(4) == b"PAR1" else "feather"
-    with damage_told(path, f"{form} file"):
+    with report_damage(path, f"{form} file"):
         read = pq.read_table if form == "parquet" else feather.read_table
         table = read(path, use_threads=False, memory_map=False)
     columns = []
@@ -46,7 +46,7 @@ def read_arrow(path: Path) -> RawFile:
             values = values.cast(values.type.value_type)
         if pa.types.is_decimal(values.type):
             values = values.cast(pa.float64())
-        with damage_told(path, f"{form} file"):
+        with report_damage(path, f"{form} file"):
             numbers = values.to_numpy()
         # other types (text, lists, structures) cannot be columns
         numbers = numbers if numbers.dtype.kind in "fiubMm" else np.empty(0, "U1")

@@ -17,7 +17,7 @@ from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import plain, settings_of
 from tribolab.reading.raw.hdf5_safety import foreign_storage, refused
 from tribolab.reading.raw.model import RawColumn, RawFile
-from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.opening import isolated, report_damage
 
 _OF_HDF5 = {
     *keys_of("unit"),
@@ -29,7 +29,7 @@ _OF_LIBRARY = ("#refs#", "#subsystem#")
 _NAMES = ("columns", "column_names", "names", "labels", "channels", "fields")
 _UNITS = (*keys_of("unit"), "column_units", "Units", "Unit")
 _MEANINGS = ("long_name", "description", "standard_name", "label", "title")
-_MOST_ELEMENTS = 500  # elements of a structure array
+_MAX_ELEMENTS = 500  # elements of a structure array
 
 
 @isolated("h5py")
@@ -50,7 +50,7 @@ def read_hdf5(path: Path) -> RawFile:
     import h5py
 
     found = _Found(h5py)
-    with damage_told(path, "HDF5 file"):
+    with report_damage(path, "HDF5 file"):
         with h5py.File(path, "r") as file:
             found.tell("", file)
             file.visititems(found.visit)
@@ -128,7 +128,7 @@ class _Found:
     def _elements(self, name: str, item: Any) -> None:
         """Read a field of a structure array, whose values are stored elsewhere."""
         group, _, field = name.rpartition("/")
-        for number, reference in enumerate(item[()].ravel()[:_MOST_ELEMENTS], start=1):
+        for number, reference in enumerate(item[()].ravel()[:_MAX_ELEMENTS], start=1):
             target = item.file[reference] if reference else None
             if not isinstance(target, self._h5py.Dataset):
                 continue

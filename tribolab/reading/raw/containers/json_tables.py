@@ -23,8 +23,8 @@ _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
 _MIN_NUMBERS = 3  # smallest length of a column
 _ROWS = 5  # records inspected
 _DEEPEST = 12  # deepest nesting searched
-_MOST_PARTS = 3_000_000  # lists and objects; each takes a hundred bytes
-_MOST_SETTINGS = 60
+_MAX_PARTS = 3_000_000  # lists and objects; each takes a hundred bytes
+_MAX_SETTINGS = 60
 _MAX_SETTING = 200  # characters of a setting
 _SET = re.compile(r"set[_ -]?(?:point)?s?|target|soll\w*|commanded|programmed", re.IGNORECASE)
 
@@ -37,7 +37,7 @@ class _Table(NamedTuple):
     said: list[Setting]
 
 
-def holds_tables(text: str) -> bool:
+def has_tables(text: str) -> bool:
     """Whether a text is JSON with at least two columns of numbers.
 
     Parameters
@@ -92,11 +92,11 @@ def read_json(path: Path) -> RawFile:
         )
         name = f"Step {number}" if len(chosen) > 1 else ""
         found.append(RawTable(name, columns, tuple(_with_units(table.said, units))))
-    return RawFile(path, "json", tuple(found), tuple(said[:_MOST_SETTINGS]))
+    return RawFile(path, "json", tuple(found), tuple(said[:_MAX_SETTINGS]))
 
 
 def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
-    if text.count("[") + text.count("{") > _MOST_PARTS:
+    if text.count("[") + text.count("{") > _MAX_PARTS:
         return [], [], {}
     try:
         document = json.loads(text.removeprefix("\ufeff"))
@@ -220,7 +220,7 @@ def _settings_of_object(part: Json, key: str) -> list[Setting]:
     """Return the single values of an object as settings, e.g. "radius: 15 mm"."""
     before = f"{_clean(key)} " if _SET.fullmatch(key) else ""
     found = (said for name, value in part.items() if (said := _setting(name, value)))
-    few = islice(found, _MOST_SETTINGS)
+    few = islice(found, _MAX_SETTINGS)
     return [s._replace(key=f"{before}{s.key}", text=s.text[:_MAX_SETTING]) for s in few]
 
 

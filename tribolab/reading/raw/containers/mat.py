@@ -15,12 +15,12 @@ from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile
-from tribolab.reading.raw.opening import damage_told, isolated, largest_unpacked
+from tribolab.reading.raw.opening import isolated, largest_unpacked, report_damage
 
 _DEEPEST = 8  # deepest nesting of structures
-_MOST_ELEMENTS = 500  # elements of a structure array
+_MAX_ELEMENTS = 500  # elements of a structure array
 _MAX_TEXT = 2000  # characters of a text
-_MOST_CELLS = 200  # texts in cells
+_MAX_CELLS = 200  # texts in cells
 _HEADER, _COMPRESSED = 128, 15  # bytes before the variables, and type code of a compressed one
 _STATED = 64  # compressed bytes that contain type and length
 
@@ -60,7 +60,7 @@ def read_variables(path: Path) -> list[Variable]:
     from scipy.io import loadmat
 
     _refuse_bomb(path)
-    with damage_told(path, "MAT file"), warnings.catch_warnings(record=True) as warned:
+    with report_damage(path, "MAT file"), warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         content = loadmat(path, appendmat=False, mat_dtype=True)
         # with MATLAB's own types, SciPy would drop imaginary parts
@@ -103,7 +103,7 @@ def _variables(name: str, value: Any, depth: int) -> list[Variable]:
 
     if isinstance(value, MatlabFunction | MatlabOpaque):
         return [Variable(name, None)]
-    if value.dtype.names and depth < _DEEPEST and value.size <= _MOST_ELEMENTS:
+    if value.dtype.names and depth < _DEEPEST and value.size <= _MAX_ELEMENTS:
         return [
             variable
             for number, element in enumerate(value.ravel(order="F"), start=1)
@@ -121,7 +121,7 @@ def _variables(name: str, value: Any, depth: int) -> list[Variable]:
     if value.dtype.kind == "O":
         cells = [c for c in value.flat if isinstance(c, np.ndarray)]
         alone = all(cell.dtype.kind == "U" and cell.size == 1 for cell in cells)
-        return [Variable(name, None, tuple(c.item() for c in cells[:_MOST_CELLS] if alone))]
+        return [Variable(name, None, tuple(c.item() for c in cells[:_MAX_CELLS] if alone))]
     if value.dtype.kind == "b":
         value = value.astype(np.uint8)
     return [Variable(name, value if value.dtype.kind in "fiu" else None)]

@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import Place, Setting
 
-_SHORT = 200  # most characters of a setting
+_MAX_SETTING = 200  # most characters of a setting
 _DEEPEST = 6  # deepest nesting of objects
 _PER = re.compile(  # fric_N_per_V, v_set_um_per_s
     r"(?P<key>\w+?)_+(?P<unit>[^\W\d_]{1,6})_per_(?P<other>[^\W\d_]{1,6}\d?)"
@@ -63,7 +63,7 @@ def settings_of(key: str, value: object, path: str = "", depth: int = 0) -> list
     if value is None or not str(value).strip():
         return []
     name = _with_unit(key)
-    text = " ".join(str(value).split())[: max(_SHORT - len(name), 0)]
+    text = " ".join(str(value).split())[: max(_MAX_SETTING - len(name), 0)]
     return [Setting(name, text, Place(path))]
 
 
@@ -73,7 +73,7 @@ def _of_object(key: str, value: Mapping[str, object], path: str, depth: int) -> 
     numbers = [n for n, each in rest.items() if isinstance(each, int | float)]
     if isinstance(units, str) and len(numbers) == 1 and key:  # {"value": 18, "unit": "mm"}
         name = "" if numbers[0].lower() in keys_of("value") else f" {numbers[0]}"
-        text = f"{rest.pop(numbers[0])} {units}"[:_SHORT]
+        text = f"{rest.pop(numbers[0])} {units}"[:_MAX_SETTING]
         return [Setting(f"{key}{name}", text, Place(path))]
     found = []
     if isinstance(units, Mapping):  # units of other values, by name

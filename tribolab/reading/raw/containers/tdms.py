@@ -12,7 +12,7 @@ from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import settings_of
 from tribolab.reading.raw.model import Clock, RawColumn, RawFile
-from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.opening import isolated, report_damage
 
 _UNITS = ("unit_string", "NI_UnitDescription", "Unit", *keys_of("unit"))
 
@@ -46,7 +46,7 @@ def read_tdms(path: Path, *, values: bool = True) -> RawFile:
     from nptdms import TdmsFile
 
     groups = Groups()
-    with damage_told(path, "TDMS file"), path.open("rb") as stream:
+    with report_damage(path, "TDMS file"), path.open("rb") as stream:
         file = (TdmsFile.read if values else TdmsFile.read_metadata)(stream)
         groups.add_settings("", _settings(file.properties, ""))
         channels = [channel for group in file.groups() for channel in group.channels()]

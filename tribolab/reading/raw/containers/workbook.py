@@ -13,13 +13,13 @@ import numpy as np
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.raw.containers.xml_workbook import XmlWorkbook, is_xml_workbook
 from tribolab.reading.raw.model import Place, RawColumn, RawFile, RawTable, Setting
-from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.opening import isolated, report_damage
 
-_MOST_CELLS = 50_000_000  # most cells of a sheet
-_MOST_ROWS, _MOST_WIDE = 100, 12  # size of a block of settings in cells
+_MAX_CELLS = 50_000_000  # most cells of a sheet
+_MAX_ROWS, _MAX_WIDE = 100, 12  # size of a block of settings in cells
 _HEAD = 4096  # bytes sufficient to recognise a workbook in XML
 _SUMMARY = 30  # most rows of a summary below a table
-_SHORT = 200  # characters of a setting
+_MAX_SETTING = 200  # characters of a setting
 _ABOVE = 40  # rows of a sheet searched for names
 _UNIT_BEHIND = re.compile(r"\s*[\[(][^\[\]()]*[\])]$")
 Cells = Sequence[Sequence[object]]
@@ -42,7 +42,7 @@ def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
         If it is damaged, or a sheet is larger than a table of numbers.
     """
     cells: dict[str, Cells] = {}
-    with damage_told(path, "workbook"):
+    with report_damage(path, "workbook"):
         book = _book(path)
         for name in book.sheet_names:
             page = book.get_sheet_by_name(name)
@@ -55,7 +55,7 @@ def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
 @isolated("python_calamine")
 def _sheet_and_settings(path: Path, sheet: str | None) -> tuple[str, Cells, list[Cells]]:
     """Return a sheet's name and cells, and the cells of other small sheets."""
-    with damage_told(path, "workbook"):
+    with report_damage(path, "workbook"):
         book = _book(path)
         sheet = sheet or book.sheet_names[0]
         if sheet not in book.sheet_names:
@@ -138,7 +138,7 @@ def read_sheets(
             title = Setting("", sheet, Place(sheet), "title")
             settings = (title, *table.settings)
             tables.append(table._replace(columns=columns, settings=settings))
-        elif len(rows) <= _MOST_ROWS:
+        elif len(rows) <= _MAX_ROWS:
             others += _settings_above(rows)
     return RawFile(path, "excel", tuple(tables), tuple(others))
 
@@ -177,7 +177,7 @@ def _table_below(
         filled = [n for n, cell in enumerate(cells) if cell != ""]
         values = of_cells(cells[: filled[-1] + 1 if filled else 0])
         columns.append(RawColumn(name, unit, values, path=name))
-    return RawTable(sheet, tuple(columns), tuple(_settings_above(rows[: line - 1][:_MOST_ROWS])))
+    return RawTable(sheet, tuple(columns), tuple(_settings_above(rows[: line - 1][:_MAX_ROWS])))
 
 
 def _rows_above_summary(body: Cells) -> Cells:
@@ -192,23 +192,23 @@ def _rows_above_summary(body: Cells) -> Cells:
 
 def _check_size(path: Path, sheet: str, page: object) -> None:
     height, width = (getattr(page, f"total_{side}") for side in ("height", "width"))
-    if height * width > _MOST_CELLS:
+    if height * width > _MAX_CELLS:
         raise ReadError(f"sheet '{shown(sheet)}' is larger than a table of numbers", where=path)
 
 
 def is_small(page: object) -> bool:
     """Whether a sheet (of calamine) is so small that it may contain settings."""
     height, width = (getattr(page, f"total_{side}") for side in ("height", "width"))
-    return bool(height <= _MOST_ROWS and width <= _MOST_WIDE)
+    return bool(height <= _MAX_ROWS and width <= _MAX_WIDE)
 
 
 def _settings_above(rows: Cells) -> list[Setting]:
     """Return rows of cells that contain words as settings."""
     settings = []
     for line, row in enumerate(rows, start=1):
-        cells = [" ".join(str(cell).split()) for cell in row[:_MOST_WIDE] if cell not in ("", None)]
+        cells = [" ".join(str(cell).split()) for cell in row[:_MAX_WIDE] if cell not in ("", None)]
         if cells and any(map(str.isalpha, "".join(cells))):
-            text = "\t".join(cells)[:_SHORT]
+            text = "\t".join(cells)[:_MAX_SETTING]
             settings.append(Setting("", text, Place(line=line), "cells"))
     return settings
 

@@ -12,7 +12,7 @@ from tribolab.core.errors import ReadError
 _MARK = b"urn:schemas-microsoft-com:office:spreadsheet"
 _END = b"Workbook>"
 _HEAD = 4096  # bytes at either end sufficient to recognise it
-_MOST_CELLS = 5_000_000  # all cells are in memory at once
+_MAX_CELLS = 5_000_000  # all cells are in memory at once
 _BLOCK = 1 << 20
 Cell = str | float
 
@@ -104,7 +104,7 @@ class XmlWorkbook:
             self._fill(self._row, said.get("Index"), "")
             self._row.append("")
             self._cells += 1
-            if self._cells > _MOST_CELLS:
+            if self._cells > _MAX_CELLS:
                 raise ReadError("the workbook is larger than a table of numbers", where=self._path)
         elif kind == "Data":
             self._is_number, self._text = said.get("Type") == "Number", []
@@ -113,7 +113,7 @@ class XmlWorkbook:
         """Add the empty cells or rows before one with an explicit number, from 1."""
         if index is not None and re.fullmatch(r"\d{1,7}", index):
             self._cells += max(int(index) - 1 - len(cells), 0)
-            if self._cells > _MOST_CELLS:
+            if self._cells > _MAX_CELLS:
                 raise ReadError("the workbook is larger than a table of numbers", where=self._path)
             cells.extend([empty] * (int(index) - 1 - len(cells)))
 

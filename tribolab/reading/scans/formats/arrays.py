@@ -121,7 +121,7 @@ def read_scan_arrays(
     return xr.Dataset({"height": (("y", "x"), turned.T)}, {"y": y, "x": x}, attrs)
 
 
-def holds_map(path: Path) -> bool:
+def is_map_file(path: Path) -> bool:
     """Whether a file certainly contains a matrix of heights, by its name or unit.
 
     Raises

@@ -25,7 +25,7 @@ _HEAD = 1 << 20  # bytes in which a matrix must begin
 _CUT = 8  # bytes of an incomplete character at their end
 _HEAD_LINES = 200  # most lines above a matrix
 _MIN_COLUMNS = 8  # least columns of a matrix; fewer may be a table
-_MOST_OF_LINE = 24  # numbers of one profile in a line
+_MAX_OF_LINE = 24  # numbers of one profile in a line
 _ROWS = 4  # rows of equal width needed to recognise a matrix
 _MARKS = frozenset(
     (
@@ -116,7 +116,7 @@ def read_matrix(
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
         return None  # the file has a column or row of positions
     counted = any(0 <= n - heights.size < matrix.columns for _, n in header.stated)
-    goes_on = matrix.ragged or (counted and matrix.columns <= _MOST_OF_LINE)
+    goes_on = matrix.ragged or (counted and matrix.columns <= _MAX_OF_LINE)
     if goes_on and header.columns is None:
         return None  # a profile whose heights continue on the next line
     whole = (heights == np.round(heights)) | np.isnan(heights)

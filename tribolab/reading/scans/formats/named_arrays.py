@@ -20,7 +20,7 @@ _HDF5 = b"\x89HDF\r\n\x1a\n"
 _NETCDF = (b"CDF\x01", b"CDF\x02")
 _MATLAB = (b"MATLAB 5.0", b"MATLAB 7.3")
 _MAX_TEXT = 500  # most characters of a text
-_MOST = 200  # most arrays of a file
+_MAX_ARRAYS = 200  # most arrays of a file
 
 
 class HeldArray(NamedTuple):
@@ -48,7 +48,7 @@ def is_npz(path: Path) -> bool:
     return bool(names) and all(name.endswith(".npy") for name in names)
 
 
-def holds_arrays(path: Path, head: bytes) -> bool:
+def has_arrays(path: Path, head: bytes) -> bool:
     """Whether a file has a format with named arrays."""
     marks = (NPY, _HDF5, *_NETCDF, *_MATLAB)
     return head.startswith(marks) or (head.startswith(b"PK\x03\x04") and is_npz(path))
@@ -89,7 +89,7 @@ def _of_numpy(path: Path) -> HeldArrays:
         _take(held, path.stem, loaded, {})
         return held
     with loaded as archive:
-        for name in archive.files[:_MOST]:
+        for name in archive.files[:_MAX_ARRAYS]:
             try:
                 _take(held, name, archive[name], {})
             except ValueError:  # Python objects, which contain no measurement
@@ -133,7 +133,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
         if not isinstance(item, h5py.Dataset):
             _add_attributes(held, name, attrs)
             return
-        if item.shape is None or len(held.arrays) >= _MOST or item.dtype.names:
+        if item.shape is None or len(held.arrays) >= _MAX_ARRAYS or item.dtype.names:
             return
         if attrs.get("MATLAB_class") == "char":
             held.texts[name] = "".join(map(chr, np.ravel(item[()])[:_MAX_TEXT].tolist()))

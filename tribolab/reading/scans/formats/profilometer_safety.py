@@ -12,9 +12,9 @@ from tribolab.core.errors import ReadError
 
 _MEGABYTE = 1 << 20
 _BINARY = (b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
-_MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # limits of text without a dialect
+_MAX_LINES, _MAX_ROW = 2_000_000, 1 << 20  # limits of text without a dialect
 _HEADER_LINES = 200  # header lines that SurfaceTopography's column reader can skip
-_LONG = 4096  # bytes of a line of words, for patterns that take quadratic time
+_MAX_LINE = 4096  # bytes of a line of words, for patterns that take quadratic time
 _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
 # SurfaceTopography's text formats in its order; "xyz" takes any first line as a row, so it is used
 # only for tables of numbers up to their end
@@ -72,7 +72,7 @@ def _text_formats(path: Path) -> list[str]:
     lines = re.split(rb"\r\n|\r|\n", content)
     words = [number for number, line in enumerate(lines) if not _NUMBERS.fullmatch(line)]
     for number in words:
-        if len(lines[number]) > _LONG:
+        if len(lines[number]) > _MAX_LINE:
             raise ReadError(
                 f"{path}: line {number + 1} has {len(lines[number])} characters that are not all "
                 "numbers; a profile's text has short lines of words; export it again"
@@ -86,18 +86,18 @@ def _text_formats(path: Path) -> list[str]:
 def _refuse_endless_lines(path: Path, content: bytes) -> None:
     """Raise for text with lines too long for the memory."""
     count = content.count(b"\n") + content.count(b"\r")  # before creating a list of lines
-    if count > _MOST_LINES:
+    if count > _MAX_LINES:
         raise ReadError(
             f"{path}: {count} lines are more than a profile or map without a dialect may have "
-            f"({_MOST_LINES}); describe the file in a TOML dialect"
+            f"({_MAX_LINES}); describe the file in a TOML dialect"
         )
     letters = np.frombuffer(content, dtype=np.uint8)
     ends = np.flatnonzero((letters == ord("\n")) | (letters == ord("\r")))
     longest = int(np.diff(ends, prepend=-1, append=len(content)).max()) - 1
-    if longest > _LONGEST_ROW:
+    if longest > _MAX_ROW:
         raise ReadError(
             f"{path}: a line of {longest} characters is longer than any row of a map "
-            f"({_LONGEST_ROW}); export it with line ends"
+            f"({_MAX_ROW}); export it with line ends"
         )
 
 

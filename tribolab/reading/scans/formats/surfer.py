@@ -16,7 +16,7 @@ from tribolab.units.conversion import conversion
 
 _TEXT, _SINGLE = b"DSAA", b"DSBB"
 _BLANK = 1.70141e38  # sentinel; larger numbers are sentinels, too
-_MOST = 100_000_000  # most heights
+_MAX_HEIGHTS = 100_000_000  # most heights
 
 
 def is_surfer(head: bytes) -> bool:
@@ -60,7 +60,7 @@ def read_surfer(
         columns, rows = (int(size) for size in sizes)
     except (ValueError, OverflowError, struct.error) as error:
         raise ReadError(f"the grid is damaged: {brief(error)}", where=path) from error
-    if ends.size < 6 or min(rows, columns) < 2 or rows * columns > _MOST:
+    if ends.size < 6 or min(rows, columns) < 2 or rows * columns > _MAX_HEIGHTS:
         raise ReadError(f"{columns} x {rows} points, as it says, are no map", where=path)
     if heights.size != rows * columns:
         raise ReadError(

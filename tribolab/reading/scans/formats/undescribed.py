@@ -14,7 +14,7 @@ from tribolab.reading.scans.formats.column_map import read_column_map
 from tribolab.reading.scans.formats.gauges import is_gauge, read_gauge
 from tribolab.reading.scans.formats.labelled_map import read_labelled_map
 from tribolab.reading.scans.formats.matrix import read_matrix
-from tribolab.reading.scans.formats.named_arrays import holds_arrays, is_npz
+from tribolab.reading.scans.formats.named_arrays import has_arrays, is_npz
 from tribolab.reading.scans.formats.named_units import units_in_name
 from tribolab.reading.scans.formats.profilometers import NotSaidError, read_foreign
 from tribolab.reading.scans.formats.sdf import as_standard, is_sdf_draft
@@ -76,7 +76,7 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
 def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    if holds_arrays(path, head):
+    if has_arrays(path, head):
         return _read_arrays(path, x_unit, height_unit)
     inside = as_standard(path) if is_sdf_draft(head) else unpacked(path, head)
     if inside != path:

@@ -27,7 +27,7 @@ from tribolab.reading.scans.grid import even, gridded
 _MAIN = "main.xml"
 _ROOT = b"ISO5436_2"
 _TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
-_MOST = 1 << 31  # most points
+_MAX_POINTS = 1 << 31  # most points
 _NOT_SAID = {"", "unknown", "not available", "n/a", "none"}
 _FIELDS = {
     "recorded_at": "Record2/Date",
@@ -209,7 +209,7 @@ def _shape(path: Path, root: ElementTree.Element) -> tuple[int, int]:
     else:
         sizes = [int(_number(path, root, "Record3/ListDimension", 0)), 1, 1]
     nx, ny, layers = sizes
-    if nx < 1 or ny < 1 or nx * ny > _MOST:
+    if nx < 1 or ny < 1 or nx * ny > _MAX_POINTS:
         raise ReadError(f"{path}: {nx} x {ny} points, as the file says, are no profile and no map")
     if layers != 1:
         raise ReadError(f"{path}: {layers} layers of heights are in the file, one is wanted")

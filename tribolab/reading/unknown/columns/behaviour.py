@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from tribolab.reading.unknown.model import DraftColumn, Kind
 
 _ROWS = 20_000  # rows looked at
-_SAME = 0.9999  # correlation of one signal in two units
+_MIN_CORRELATION = 0.9999  # correlation of one signal in two units
 _COMPARED = 1000  # columns held against one another: their pairs grow with the square
 _EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
 _SMOOTH = 1.12
-_LONGEST_SCAN = 200.0  # mm, the largest traverse of a profilometer
+_MAX_SCAN = 200.0  # mm, the largest traverse of a profilometer
 _HIGHEST = 5.0  # mm, the range of a stylus gauge
 
 
@@ -86,7 +86,7 @@ def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
     """Heights as large as the length, number for number, are in a smaller unit than it."""
     heights = part[np.isfinite(part[:, height]), height]
     reach, length = np.ptp(heights) if heights.size else 0.0, np.ptp(part[:, 0])
-    if length > _LONGEST_SCAN:  # metres, in millimetres
+    if length > _MAX_SCAN:  # metres, in millimetres
         return "um", "um" if reach < 0.1 * length else "nm"
     return "mm", "um" if reach > 0.1 * length or reach > _HIGHEST else "mm"
 
@@ -151,7 +151,7 @@ def _kin(part: np.ndarray, places: list[int]) -> dict[int, list[int]]:
     moving = np.asarray(places[:_COMPARED])[moves]
     if moving.size < 2:
         return {}
-    alike = np.abs(np.corrcoef(part[:, moving], rowvar=False)) > _SAME
+    alike = np.abs(np.corrcoef(part[:, moving], rowvar=False)) > _MIN_CORRELATION
     np.fill_diagonal(alike, False)
     return {int(i): moving[row].tolist() for i, row in zip(moving, alike, strict=True)}
 

@@ -14,7 +14,7 @@ from tribolab.units.quantities import unit_conversion
 
 _RATIO = ("friction_coefficient", "friction_force", "normal_force")
 _APART = 1.5  # times: filters and zeros that the instrument took off make less
-_FEW = 20  # rows under load that tell
+_MIN_LOADED_ROWS = 20  # rows under load that tell
 _LOADED = 0.5  # of the largest load
 _OVER_N = re.compile(r"\w{1,3}\s*/\s*N")  # a symbol and its unit, or divided by the normal force
 
@@ -40,10 +40,10 @@ def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
     if load is None:
         return []
     sound = np.isfinite(stated) & np.isfinite(friction) & np.isfinite(load) & (stated != 0)
-    if sound.sum() < _FEW:
+    if sound.sum() < _MIN_LOADED_ROWS:
         return []
     sound &= np.abs(load) > _LOADED * np.abs(load[sound]).max()
-    if sound.sum() < _FEW:
+    if sound.sum() < _MIN_LOADED_ROWS:
         return []
     ratios = stated[sound], friction[sound] / load[sound]
     sizes = [float(np.median(np.abs(x))) for x in ratios]

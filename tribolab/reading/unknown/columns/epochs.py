@@ -17,8 +17,8 @@ _SECONDS: tuple[tuple[Epoch, float, float], ...] = (
     ("labview", 3_029_529_600.0, 4_607_452_800.0),
 )
 _EXCEL = (36_526.0, 54_789.0)  # [d] the same years
-_LONGEST_STEP = 5.0  # [s] beyond which a counter of something smaller is as likely
-_LONGEST_RUN = 400.0  # [d]
+_MAX_STEP = 5.0  # [s] beyond which a counter of something smaller is as likely
+_MAX_RUN = 400.0  # [d]
 _SMALLER = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 
 
@@ -57,11 +57,11 @@ def counted_from(values: np.ndarray, unit: str | None, *, dated: bool = False) -
     days = dated if unit is None else converts(unit, "s") and conversion(unit, "s")[0] == _DAY
     if days:
         whole = bool((finite == np.round(finite)).all())
-        inside = _EXCEL[0] <= low and high <= _EXCEL[1] and high - low < _LONGEST_RUN
+        inside = _EXCEL[0] <= low and high <= _EXCEL[1] and high - low < _MAX_RUN
         return Counted("excel", unit or "d") if inside and not whole else None
     units = _SMALLER if unit is None else {unit: conversion(unit, "s")[0]}
     for name, scale in units.items():
         for epoch, first, last in _SECONDS:
-            if first <= scale * low and scale * high <= last and scale * step <= _LONGEST_STEP:
+            if first <= scale * low and scale * high <= last and scale * step <= _MAX_STEP:
                 return Counted(epoch, name)
     return None

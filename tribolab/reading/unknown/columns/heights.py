@@ -50,7 +50,7 @@ def _trace_name(name: str) -> bool:
     return key_pattern("trace_name").search(normalise_label(bare)) is not None
 
 
-def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
+def side_by_side_profiles(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     """Return positions and the profiles side by side behind them: x [mm], z1 [um], z2 [um]."""
     if len(columns) < 3 or not side_by_side(columns[1:]):
         return None

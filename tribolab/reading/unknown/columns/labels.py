@@ -78,7 +78,7 @@ def _in_small_letters(unit: str | None) -> str:
     return unit.lower() if unit and capitals and is_unit(unit.lower()) else ""
 
 
-_MOST_NAMES = 64
+_MAX_NAMES = 64
 _IN = (
     rf"\s{{0,3}}(?:{alternatives('in')}\s|[:=]|(?=[\[(]))"
     r"\s{0,3}[\[(]?"
@@ -94,7 +94,7 @@ _SAID_UNIT = r"(?P<unit>[^\W\d_%][^\s,;:()\[\]]{0,20}|%|°C)(?=$|[\s,;.)\]])"
 def _stated_units(layout: Layout, cells: Sequence[str]) -> dict[int, str]:
     """Return units of columns (from 1) that the text above says: "F in gf, t in ms"."""
     bare = [place for place, cell in enumerate(cells, 1) if cell and split_name(cell)[1] is None]
-    if len(bare) > _MOST_NAMES or layout.heading is None or layout.heading.units is not None:
+    if len(bare) > _MAX_NAMES or layout.heading is None or layout.heading.units is not None:
         return {}
     lines = [line[:_MAX_LINE] for line in layout.text_above()]
     found = {}

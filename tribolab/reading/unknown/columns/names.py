@@ -30,7 +30,7 @@ _FIRST_WORD = re.compile(r"[\W_]+")
 _BY_UNIT = 0.6  # score of a name that says nothing, if its unit does
 
 
-def says_something(columns: list[DraftColumn]) -> bool:
+def has_meaning(columns: list[DraftColumn]) -> bool:
     """Whether the header says more than 'Channel 1, Channel 2'."""
     bare = [bare_name(column)[:2] for column in columns if column.label]
     return any(unit is not None or matches(name, unit) for name, unit in bare)

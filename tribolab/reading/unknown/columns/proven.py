@@ -22,12 +22,12 @@ from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.quantities import QUANTITIES, unit_conversion
 
-_NEAR = 0.1  # of the best score: names that suit a quantity about as well
+_SCORE_MARGIN = 0.1  # of the best score: names that suit a quantity about as well
 _READS_LOAD = 0.1  # of a stated load: controllers keep it so well
 _INNER = (0.02, 0.98)  # quantiles of a position: it may be elsewhere before the test
 _SHORTEST, _LONGEST = 0.6, 1.2  # strokes that a position spans
 _LENGTHS = ("um", "mm", "cm", "m")
-_MOST = 100  # columns: of more, too many may be members of a rule
+_MAX_COLUMNS = 100  # columns: of more, too many may be members of a rule
 _NAMED = ("mass", "turns", "distance", "torque")
 
 
@@ -42,7 +42,7 @@ def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Pro
         Their numbers (rows, columns) as written; NaN for a column of text.
     """
     bare = [bare_name(column) for column in columns]
-    if len(columns) > _MOST or all(unit is not None for _, unit, _ in bare):
+    if len(columns) > _MAX_COLUMNS or all(unit is not None for _, unit, _ in bare):
         return {}  # nothing is left to be proven
     candidates = [_candidate(*one, values) for one, values in zip(bare, numbers.T, strict=True)]
     return prove(candidates, numbers)
@@ -134,7 +134,7 @@ def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Ca
         return Candidate(frozenset(), unit)
     plain = normalise_label(name)
     options = matches(name, unit)
-    near = {o.quantity for o in options if o.score >= options[0].score - _NEAR}
+    near = {o.quantity for o in options if o.score >= options[0].score - _SCORE_MARGIN}
     quantities = near & known_quantities()
     quantities |= {concept for concept in _NAMED if key_pattern(concept).search(plain)}
     if is_track_radius(plain):

@@ -34,7 +34,7 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason
 from tribolab.units.quantities import unit_conversion
 
-_LONGEST_LINE = 300  # characters of a line that are looked at
+_MAX_LINE = 300  # characters of a line that are looked at
 _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
 _WORDS = rf"(?:[^\W\d][^;|,；，]|[{UNPARTED}])[^;|,；，]{{1,60}}"  # two of such letters make a word
 _KNOWN_SHARE = 0.3  # of an explanation that a known word makes up
@@ -42,9 +42,9 @@ _LETTERS_OF_NAME = 4  # of a name that a text mentions
 _STATED = 8.0  # log odds of what the text says outright
 _BY_LOAD = 3.0
 _LOADED = 0.4  # of the largest reading
-_MOST_READINGS = 0.98  # the few above are faults
+_MAX_READINGS = 0.98  # the few above are faults
 _MOTION = ("position", "sliding_velocity", "set_speed")
-_MOST_OF_SLED = 5.0  # times its weight: no dry contact has a higher coefficient of friction
+_MAX_OF_SLED = 5.0  # times its weight: no dry contact has a higher coefficient of friction
 _READS_LOAD = (0.75, 1.33)  # times the stated load: a reading of the load itself
 
 
@@ -54,7 +54,7 @@ def legend_evidence(layout: Layout) -> Rule:
     def rule(facts: Facts) -> Iterator[Evidence]:
         if facts.kind != "run":
             return
-        lines = [line[:_LONGEST_LINE] for line in layout.text_above()]
+        lines = [line[:_MAX_LINE] for line in layout.text_above()]
         for place in range(len(facts.columns)):
             about = _explanation(facts.bare[place][0], lines) if _is_axis(facts, place) else ""
             if not about:
@@ -134,7 +134,7 @@ def stated_load_evidence(layout: Layout) -> Rule:
         # no cell reads the weight of a sled
         sled = part_pattern("sled").search(normalise_label(load.text)) is not None
         share = _share_of_load(facts, place, load)
-        if not 0 < share < (_MOST_OF_SLED if sled else _READS_LOAD[1]):
+        if not 0 < share < (_MAX_OF_SLED if sled else _READS_LOAD[1]):
             return
         presses = share > _READS_LOAD[0] and not sled
         if presses and not facts.is_either_force(place):
@@ -187,7 +187,7 @@ def _share_of_load(facts: Facts, place: int, load: Amount) -> float:
     values = facts.numbers[:, place]
     read = np.abs(values[np.isfinite(values)])
     read = read * unit_conversion(facts.bare[place][1] or "N", "normal_force")[0]
-    most = float(np.quantile(read, _MOST_READINGS)) if read.size else 0.0
+    most = float(np.quantile(read, _MAX_READINGS)) if read.size else 0.0
     return float(np.median(read[read > _LOADED * most])) / stated if most > 0 else 0.0
 
 
@@ -223,7 +223,7 @@ def unused_force_columns(
     used
         Places of those that a formula uses.
     """
-    lines = [line[:_LONGEST_LINE] for line in layout.text_above()]
+    lines = [line[:_MAX_LINE] for line in layout.text_above()]
     said = []
     for column in columns:
         name, unit, _ = bare_name(column)

@@ -17,12 +17,12 @@ from tribolab.reading.unknown.columns.coefficient import disagreement, force_or_
 from tribolab.reading.unknown.columns.dates import take_dates
 from tribolab.reading.unknown.columns.heights import (
     as_heights,
-    beside_x,
     in_stated_unit,
     side_by_side,
+    side_by_side_profiles,
 )
 from tribolab.reading.unknown.columns.labels import bare_name, labelled
-from tribolab.reading.unknown.columns.names import decide_by_name, says_something
+from tribolab.reading.unknown.columns.names import decide_by_name, has_meaning
 from tribolab.reading.unknown.columns.proven import (
     add_proven_units,
     add_unit_of_load,
@@ -117,7 +117,7 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
     profile = _profile_of(layout, columns, numbers, spacing, stated=bool(unit))
     if profile is not None:
         return profile
-    if says_something(columns):
+    if has_meaning(columns):
         kind, columns = decide_by_name(layout, columns, numbers, proofs, placed=spacing.is_stated)
         if kind == "table" and find_gain(layout, columns, "friction_force") is not None:
             kind = "run"  # volts, and what one is worth
@@ -143,7 +143,7 @@ def _profile_of(
         likely = _likely_unit(numbers, spacing.pitch)
         columns = [as_heights(column, stated=stated, unit=likely) for column in columns]
         return _Interpretation("scan", columns, pitched=True)
-    if (placed := beside_x(columns)) is not None:
+    if (placed := side_by_side_profiles(columns)) is not None:
         return _Interpretation("scan", placed, pitched=spacing.is_stated)
     return None
 

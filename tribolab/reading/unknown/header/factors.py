@@ -27,7 +27,7 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
 _MAX_LINE = 200  # characters of a line that are looked at
-_MOST_CONTACTS = 12
+_MAX_CONTACTS = 12
 
 
 def unapplied_factors(layout: Layout) -> list[str]:
@@ -130,7 +130,7 @@ def _unapplied(line: str) -> str:
 
 def _counts_contacts(line: str, number: Number) -> bool:
     """Whether a number is that of several contacts: "2 pins", "Number of contacts: 2"."""
-    if not number.text.isdigit() or not 1 < number.value <= _MOST_CONTACTS:
+    if not number.text.isdigit() or not 1 < number.value <= _MAX_CONTACTS:
         return False
     bodies = text_pattern("bodies_in_contact")
     before, behind = plain_text(line[: number.start]), plain_text(line[number.stop :])

@@ -43,7 +43,7 @@ _EVERY = re.compile(  # "every 10th sample"
     re.IGNORECASE,
 )
 _PER_SAMPLE = re.compile(rf"(?P<time>[mµun]?s|sec|min)\s*{_PER}\s*{_SAMPLE}\.?")
-_MANY = {"": "Hz", "k": "kHz", "m": "MHz"}  # nobody takes a sample in a thousand seconds
+_RATE_UNITS = {"": "Hz", "k": "kHz", "m": "MHz"}  # nobody takes a sample in a thousand seconds
 
 
 class Sampling(NamedTuple):
@@ -124,7 +124,7 @@ def sample_rate_unit(text: str) -> str:
     per = _PER_TIME.fullmatch("".join(normalise_label(sign) or sign for sign in text.strip()))
     if per is None or (per["many"] and per["minute"]):
         return ""
-    return "1/min" if per["minute"] else _MANY[per["many"].lower()]
+    return "1/min" if per["minute"] else _RATE_UNITS[per["many"].lower()]
 
 
 def _fewer_rows(layout: Layout) -> str:

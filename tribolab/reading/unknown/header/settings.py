@@ -9,8 +9,8 @@ from tribolab.reading.interpret.file_names import amounts_of_name, speed_of_name
 from tribolab.reading.interpret.settings import amounts_of, texts_of
 from tribolab.reading.unknown.layout.text_layout import Layout
 
-_MOST = 12  # a long preamble is not repeated in the dialect
-_MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
+_MAX_REPEATED = 12  # a long preamble is not repeated in the dialect
+_MAX_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
 
 
 def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
@@ -30,7 +30,7 @@ def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
     """
     found = {amount.name: amount for amount in amounts_of_name(layout.file.path.name)}
     above = _text_above(layout, bare=bare)
-    for amount in amounts_of(above, (_MOST_OF_SCAN if bare else _MOST) - len(found)):
+    for amount in amounts_of(above, (_MAX_OF_SCAN if bare else _MAX_REPEATED) - len(found)):
         name, number = amount.name, 1
         while name in found and not name.startswith("set_"):
             number += 1

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tribolab.reading.unknown.layout.lines import Grammar
 
 _ABOVE = 8  # lines above the first row that are looked at
-_LONGEST_MARK = 80  # characters of it
+_MAX_MARK = 80  # characters of it
 _TELLING = 200  # cells that tell whether a row is one of units
 _WORD = re.compile(r"\S+")
 # A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
@@ -77,7 +77,7 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
             if index == start - 1 and numbers == width - 1 > 1:
                 continue  # the first row lacks its last cell, and is left out
             break
-        told = lines[index][:_LONGEST_MARK]
+        told = lines[index][:_MAX_MARK]
         if width == 1 and (_MARK.fullmatch(told) or _SAYS.search(told)):
             break  # a column is named right above its numbers
         if lines[index].strip():
@@ -133,7 +133,7 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
     """Whether a line can be the header of a table of a given width."""
     filled = [cell for cell in cells if cell]
     words = [cell for cell in filled if not grammar.is_number(cell)]
-    if not filled or len(words) < 0.7 * len(filled) or _MARK.fullmatch(line[:_LONGEST_MARK]):
+    if not filled or len(words) < 0.7 * len(filled) or _MARK.fullmatch(line[:_MAX_MARK]):
         return False
     if re.match(r"\s*(#|%|//|;|\*|!)", line) and re.search(r"[:=]", line):
         return False  # a comment that says something: "# rate: 10 Hz"

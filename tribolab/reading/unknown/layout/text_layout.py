@@ -43,10 +43,10 @@ from tribolab.reading.unknown.layout.patterns import (
 )
 from tribolab.reading.unknown.layout.step_marks import STEP_WORD, Block
 
-_FEW = 20  # lines at the end that tell what parts cells
+_LAST_LINES = 20  # lines at the end that tell what parts cells
 _CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
-_WIDE, _FEWEST_OF_WIDE = 1000, 5  # columns, and rows: a line end that is lost makes such a line
-_MOST_ABOVE = 500  # lines of text above a table that are looked at
+_MAX_COLUMNS, _MIN_WIDE_ROWS = 1000, 5  # a lost line end makes few rows of many columns
+_MAX_ABOVE = 500  # lines of text above a table that are looked at
 
 
 class Held(NamedTuple):
@@ -114,9 +114,9 @@ class Layout(NamedTuple):
         """
         stop = self.blocks[0].start if bare and self.blocks else 0
         stop = self.heading.names if self.heading is not None else stop
-        above = self.lines[: min(stop, _MOST_ABOVE)]
+        above = self.lines[: min(stop, _MAX_ABOVE)]
         nothing = self.heading is not None and not any(line.strip() for line in above)
-        return self.foot[:_MOST_ABOVE] if nothing else above
+        return self.foot[:_MAX_ABOVE] if nothing else above
 
     @property
     def units_line(self) -> int:
@@ -190,7 +190,7 @@ def find_layout(file: File) -> Layout:
     text = without_commas_in_quotes(text) if quoted else text
     lines = tuple(line_feeds(text).split("\n"))
     if thousands := find_thousands(lines):
-        apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
+        apart = any("\t" in line or ";" in line for line in lines[-_LAST_LINES:])
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
     _refuse_wide(file, lines)
     grammar = find_grammar(lines)
@@ -205,7 +205,7 @@ def find_layout(file: File) -> Layout:
     first = main[0]
     guesses += _rows_that_may_belong(lines, blocks, main, grammar)
     rows = sum(len(block.rows) for block in main)
-    if first.width > limits.COLUMNS.value or (first.width > _WIDE and rows < _FEWEST_OF_WIDE):
+    if first.width > limits.COLUMNS.value or (first.width > _MAX_COLUMNS and rows < _MIN_WIDE_ROWS):
         raise ReadError(
             f"{file.path}: {first.width} columns in {rows} rows are more than an instrument "
             "writes; is it the right file, and is each row on a line of its own?"

@@ -26,7 +26,7 @@ from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
 
-_MOST = 12  # values that a long preamble states
+_MAX_SETTINGS = 12  # values that a long preamble states
 
 
 class Described(NamedTuple):
@@ -280,7 +280,7 @@ def _values(
         known = {value.pattern for value in used}
         stated = find_stated(layout, placed="x" in quantities)
         used += [value for value in stated if value.pattern not in known]
-    return values[:_MOST], used
+    return values[:_MAX_SETTINGS], used
 
 
 @overload

@@ -28,7 +28,7 @@ from tribolab.reading.unknown.derivations.interpret_columns import first_cells_o
 from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
 from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
-from tribolab.reading.unknown.proposal.questions import unsaid_of_heights
+from tribolab.reading.unknown.proposal.questions import missing_height_unit
 from tribolab.reading.unknown.proposal.show import draft_html
 
 
@@ -101,7 +101,7 @@ def _drafted(file: File, name: str) -> Draft:
     if draft.kind == "table" and _is_heights(draft):
         counts = understood.columns[0].counted and understood.columns[0].unit is None
         draft = replace(draft, unsaid="count" if counts else "pitch")
-        return replace(draft, answer=unsaid_of_heights(draft))
+        return replace(draft, answer=missing_height_unit(draft))
     return draft
 
 

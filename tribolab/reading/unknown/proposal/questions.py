@@ -38,7 +38,7 @@ _TOLD = 12  # questions of one file that are told in a line
 _LINES = 3  # of five, that say what is unclear or missing
 _LISTED = 6  # columns that are listed as understood
 _UNKNOWN = "no known instrument writes such a file, and it does not say all itself"
-_MOST_BESIDE = 50  # descriptions in the file's folder that are looked at
+_MAX_BESIDE = 50  # descriptions in the file's folder that are looked at
 _RADII = ("another length",)
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
 
@@ -191,7 +191,7 @@ def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
     return [shown(line, 40) for line in lines]
 
 
-def unsaid_of_heights(draft: Drafted) -> str:
+def missing_height_unit(draft: Drafted) -> str:
     """Return what heights alone leave open, with the lines that say too little of it.
 
     Parameters
@@ -269,7 +269,7 @@ def _drafts_of(path: object) -> list[str]:
     file = Path(str(path))
     first = f"# Drafted from '{file.name}'."
     found = []
-    for beside in sorted(file.parent.glob("*.toml"))[:_MOST_BESIDE]:
+    for beside in sorted(file.parent.glob("*.toml"))[:_MAX_BESIDE]:
         try:
             check_regular(beside)
             with beside.open(encoding="utf-8") as text:
