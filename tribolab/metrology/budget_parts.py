@@ -17,7 +17,7 @@ _NOT_STATED = "calibration not stated: statistical only"
 _RECTANGULAR = ("half-width", "step")
 # A scatter of few repeats may be small by chance. Below _SMALL_DOF degrees of freedom its share x
 # in the Welch-Satterthwaite sum is increased to 1 - (1 - x)^(1 + _CHANCE/nu^2): the coverage of U95
-# for two runs plus a calibration is then 93.4 to 96.4 % for any ratio of the two (87 to 95 % without),
+# for two runs plus a calibration is then 93.4 to 96.4 % for any ratio of both (87 to 95 % without),
 # for three runs 95 to 95.8 %. For two runs no rule is within 1 %
 _SMALL_DOF, _CHANCE = 4.0, 10.0
 _DOMINANT = 0.7  # share of the variance above which one rectangular part shapes the distribution

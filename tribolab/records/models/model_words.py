@@ -151,7 +151,8 @@ def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
     if factor > _MAX_RATIO:
         return f"{_NOT_DESCRIBED}: off by up to a factor of {number(factor, 2)}"
     trend = " and vary systematically with speed" if ordered else ""
+    within = percent(max(largest, _SMALL_DIFFERENCE))
     return (
-        f"the model fits to within {percent(max(largest, _SMALL_DIFFERENCE))} of the peak friction; "
-        f"the residuals exceed the error bars{trend}"
+        f"the model fits to within {within} of the peak friction; the residuals "
+        f"exceed the error bars{trend}"
     )
