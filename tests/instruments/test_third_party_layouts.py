@@ -237,3 +237,12 @@ def test_names_behind_a_word_are_those_of_the_numbers_below_them(tmp_path: Path)
     table = read_modulus_table(file)
     np.testing.assert_allclose(table.angular_frequency, [1, 2, 5, 10])
     np.testing.assert_allclose(table.loss, 3 * np.array([201, 202, 205, 210]))
+
+
+def test_a_coefficient_that_the_forces_prove_is_that_of_its_place(tmp_path: Path) -> None:
+    # blanks part the names from their units, too: the word 'mu' is the fifth, its column the third
+    force = 3 + 0.1 * np.sin(T)
+    lines = rows(T / 10, force, force / 10, 10.0, 5.0, mark="  ")
+    (tmp_path / "a.txt").write_text("Time [s]  Ft [N]  mu  Fn [N]  v [mm/s]\n" + lines)
+    run = tl.read(tmp_path / "a.txt")
+    np.testing.assert_allclose(run.friction_coefficient, force / 10, rtol=1e-3)

@@ -51,7 +51,7 @@ def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Pro
 def add_proven_units(columns: Sequence[DraftColumn], proofs: dict[int, Proof]) -> list[DraftColumn]:
     """Return columns with the units that are proven, where the file says none."""
     return [
-        column._replace(unit=proof.unit, name=column.name or bare_name(column)[0])
+        column._replace(unit=proof.unit)
         if (proof := proofs.get(place)) is not None and bare_name(column)[1] is None
         else column
         for place, column in enumerate(columns)
@@ -82,9 +82,7 @@ def add_unit_of_load(
     if not any(abs(size - load.number) <= _READS_LOAD * load.number for size in sizes):
         return list(columns)
     return [
-        column._replace(unit=unit, name=column.name or bare_name(column)[0])
-        if place in forces
-        else column
+        column._replace(unit=unit) if place in forces else column
         for place, column in enumerate(columns)
     ]
 
@@ -115,7 +113,7 @@ def add_unit_of_stroke(
             low, high = np.quantile(values, _INNER)
             spans = {u: (high - low) * unit_conversion(u, "position")[0] / length for u in _LENGTHS}
             unit = next((u for u, s in spans.items() if _SHORTEST < s < _LONGEST), None)
-            column = column._replace(unit=unit, name=column.name or name) if unit else column
+            column = column._replace(unit=unit) if unit else column
         result.append(column)
     return result
 
