@@ -5,7 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 
 

@@ -11,7 +11,7 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import write_data
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.records.frames import curve_table, plain_rows, stick_slip_columns
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, RunOutcome

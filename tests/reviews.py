@@ -8,7 +8,7 @@ from campaigns import RUNS, copied, simulated
 
 from tribolab.app.run import run_campaign
 from tribolab.campaign.settings.review import REVIEW_FILE
-from tribolab.report.read_results import read_results
+from tribolab.report.results_folder import read_results
 
 FROZEN, SLIPPED, LATE, SOUND = RUNS  # what happened to the runs; the checks fail the first
 SLIP = 2  # place of the stroke that slipped off

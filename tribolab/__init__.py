@@ -22,34 +22,34 @@ from tribolab.version import __version__
 # Public name -> the module it lives in; "" for a module itself. Loaded when first used, so that
 # `import tribolab` costs nothing.
 _PUBLIC = {
-    "read": "tribolab.reading.read",
-    "variables": "tribolab.units.variables",
+    "read": "tribolab.reading.run_files",
+    "variables": "tribolab.units.variable_table",
     "draft_dialect": "tribolab.reading.unknown.proposal.draft",
     "read_netcdf": "tribolab.reading.netcdf.netcdf",
     "write_netcdf": "tribolab.reading.netcdf.netcdf",
     "find_segments": "tribolab.friction.segments.find",
     "Decision": "tribolab.friction.decisions.decision",
-    "decide": "tribolab.friction.decisions.decide",
+    "decide": "tribolab.friction.decisions.decided_segments",
     "friction_coefficient": "tribolab.friction.coefficient.coefficient",
-    "half_loops": "tribolab.friction.coefficient.half_loops",
+    "half_loops": "tribolab.friction.coefficient.friction_loop",
     "uncertainty_budget": "tribolab.metrology.budget",
     "friction_per_cycle": "tribolab.friction.coefficient.cycles",
-    "moving_mass": "tribolab.friction.moving_mass",
-    "without_inertia": "tribolab.friction.moving_mass",
+    "moving_mass": "tribolab.friction.inertia",
+    "without_inertia": "tribolab.friction.inertia",
     "static_friction": "tribolab.friction.coefficient.static",
     "running_in": "tribolab.friction.running_in.history",
-    "stick_slip": "tribolab.friction.oscillation.stick_slip",
+    "stick_slip": "tribolab.friction.oscillation.slip_segments",
     "error_from_blocks": "tribolab.friction.blocks",
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "traction_curves": "tribolab.friction.traction",
     "check": "tribolab.qc.run.checks",
     "RUN_CHECKS": "tribolab.qc.run.checks",
-    "objections": "tribolab.qc.objections",
+    "objections": "tribolab.qc.finding_table",
     "check_scans": "tribolab.qc.scan.checks",
     "check_scan_set": "tribolab.qc.scan.sets",
     "read_scans": "tribolab.reading.scan_files",
-    "read_results": "tribolab.report.read_results",
+    "read_results": "tribolab.report.results_folder",
     "remove_form": "tribolab.surface.form",
     "fill_dropouts": "tribolab.surface.form",
     "psd_1d": "tribolab.surface.spectra.psd",
@@ -72,9 +72,9 @@ _PUBLIC = {
     "separation_table": "tribolab.contact.separation",
     "gap_distribution": "tribolab.contact.gap",
     "rough_line_contact": "tribolab.contact.line",
-    "adhesion": "tribolab.contact.adhesion",
-    "macroscopic_work_of_adhesion": "tribolab.contact.adhesion",
-    "adhesion_uncertainty": "tribolab.contact.adhesion_uncertainty",
+    "adhesion": "tribolab.contact.adhesive_contact",
+    "macroscopic_work_of_adhesion": "tribolab.contact.adhesive_contact",
+    "adhesion_uncertainty": "tribolab.contact.adhesion_error",
     "SurfaceEnergies": "tribolab.contact.work_of_adhesion",
     "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
     "stribeck_curve": "tribolab.lubrication.stribeck",
@@ -95,8 +95,8 @@ _PUBLIC = {
     "sliding_modes": "tribolab.regime.several",
     "Mode": "tribolab.regime.model",
     "dead_weight_gain": "tribolab.metrology.dead_weight",
-    "model_inputs": "tribolab.fit.model_inputs",
-    "model_uncertainty": "tribolab.fit.model_uncertainty",
+    "model_inputs": "tribolab.fit.input_error",
+    "model_uncertainty": "tribolab.fit.model_error",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "two_body_friction": "tribolab.rubber.two_bodies",
     "RubberBody": "tribolab.rubber.two_bodies",
@@ -108,11 +108,11 @@ _PUBLIC = {
     "load_campaign": "tribolab.campaign.settings.load",
     "load_review": "tribolab.campaign.settings.review",
     "run_campaign": "tribolab.app.run",
-    "compare": "tribolab.comparison.compare",
-    "repeatability": "tribolab.comparison.repeatability",
-    "history": "tribolab.comparison.history",
+    "compare": "tribolab.comparison.comparison",
+    "repeatability": "tribolab.comparison.repeat_study",
+    "history": "tribolab.comparison.instrument_history",
     "measuring_plan": "tribolab.comparison.planning",
-    "pack": "tribolab.archive.pack",
+    "pack": "tribolab.archive.packing",
     "TribolabError": "tribolab.core.errors",
     "plot": "",
     "rig": "",
@@ -221,15 +221,15 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.app.run import run_campaign
-    from tribolab.archive.pack import pack
+    from tribolab.archive.packing import pack
     from tribolab.campaign.settings.load import load_campaign
     from tribolab.campaign.settings.review import load_review
-    from tribolab.comparison.compare import compare
-    from tribolab.comparison.history import history
+    from tribolab.comparison.comparison import compare
+    from tribolab.comparison.instrument_history import history
     from tribolab.comparison.planning import measuring_plan
-    from tribolab.comparison.repeatability import repeatability
-    from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
-    from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
+    from tribolab.comparison.repeat_study import repeatability
+    from tribolab.contact.adhesion_error import adhesion_uncertainty
+    from tribolab.contact.adhesive_contact import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.gap import gap_distribution
     from tribolab.contact.geometry import LineContact, PointContact
     from tribolab.contact.line import rough_line_contact
@@ -240,26 +240,26 @@ if TYPE_CHECKING:
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.core.errors import TribolabError
     from tribolab.fit.fit_settings import FitSettings
+    from tribolab.fit.input_error import model_inputs
     from tribolab.fit.joint.comparison import compare_shear_stress_models
     from tribolab.fit.joint.fit import fit_shear_stress_jointly
     from tribolab.fit.joint.inputs import DryFriction
     from tribolab.fit.joint.priors import JointPriors
     from tribolab.fit.master_curve import collapse_test
-    from tribolab.fit.model_inputs import model_inputs
-    from tribolab.fit.model_uncertainty import model_uncertainty
+    from tribolab.fit.model_error import model_uncertainty
     from tribolab.fit.several import fit_shear_stresses
     from tribolab.fit.shear_stress import fit_shear_stress
     from tribolab.fit.unknowns import Unknowns
     from tribolab.friction.blocks import error_from_blocks
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.coefficient.cycles import friction_per_cycle
-    from tribolab.friction.coefficient.half_loops import half_loops
+    from tribolab.friction.coefficient.friction_loop import half_loops
     from tribolab.friction.coefficient.static import static_friction
-    from tribolab.friction.decisions.decide import decide
+    from tribolab.friction.decisions.decided_segments import decide
     from tribolab.friction.decisions.decision import Decision
-    from tribolab.friction.moving_mass import moving_mass, without_inertia
+    from tribolab.friction.inertia import moving_mass, without_inertia
     from tribolab.friction.oscillation.slip_curve import stick_slip_curve
-    from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.friction.oscillation.slip_segments import stick_slip
     from tribolab.friction.running_in.history import running_in
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
@@ -272,18 +272,18 @@ if TYPE_CHECKING:
     from tribolab.lubrication.viscosity import liquid_viscosity
     from tribolab.metrology.budget import uncertainty_budget
     from tribolab.metrology.dead_weight import dead_weight_gain
-    from tribolab.qc.objections import objections
+    from tribolab.qc.finding_table import objections
     from tribolab.qc.run.checks import RUN_CHECKS, check
     from tribolab.qc.scan.checks import check_scans
     from tribolab.qc.scan.sets import check_scan_set
     from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
-    from tribolab.reading.read import read
+    from tribolab.reading.run_files import read
     from tribolab.reading.scan_files import read_scans
     from tribolab.reading.unknown.proposal.draft import draft_dialect
     from tribolab.regime.model import Mode
     from tribolab.regime.several import sliding_modes
     from tribolab.regime.verdict import sliding_mode
-    from tribolab.report.read_results import read_results
+    from tribolab.report.results_folder import read_results
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus
     from tribolab.rubber.prony import PronySeries
@@ -295,7 +295,7 @@ if TYPE_CHECKING:
     from tribolab.surface.self_affine import self_affine_psd
     from tribolab.surface.spectra.psd import psd_1d, psd_2d
     from tribolab.surface.synthesis import synthesise_map
-    from tribolab.units.variables import variables
+    from tribolab.units.variable_table import variables
 
 
 if "IPython" in sys.modules:

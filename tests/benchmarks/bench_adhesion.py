@@ -19,9 +19,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from adhesion_cases import relaxed  # noqa: E402  the path has to be set first
 from contact_cases import E_STAR, SURFACES, reference_psd  # noqa: E402
 
-from tribolab.contact.adhesion import adhesion  # noqa: E402
 from tribolab.contact.adhesion_balance import rough_interface  # noqa: E402
-from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty  # noqa: E402
+from tribolab.contact.adhesion_error import adhesion_uncertainty  # noqa: E402
+from tribolab.contact.adhesive_contact import adhesion  # noqa: E402
 
 
 def best(call, repeats=3):

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from scipy import fft
 
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 
 _STRETCH = 8192
 

@@ -30,7 +30,7 @@ import numpy as np
 
 from tribolab.core.errors import ReadError
 from tribolab.reading.clocks.merge import merge
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.signals import signals_of
 from tribolab.rig import Protocol, Rig, simulate_run
 from tribolab.rig.files import force_file, motion_file

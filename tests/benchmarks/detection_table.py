@@ -21,7 +21,7 @@ from pathlib import Path
 from tribolab.core.errors import ReadError
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run.checks import check_run
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.rig import FAULTS, Protocol, Rig, simulate_run
 from tribolab.rig.files import force_file, motion_file
 from tribolab.studies import xu2026

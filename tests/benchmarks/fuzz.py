@@ -41,7 +41,7 @@ from mutations import MADE, mutate
 
 from tribolab.core.errors import TribolabError
 from tribolab.reading.netcdf.netcdf import read_netcdf
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.results import read_tester_results
 from tribolab.reading.unknown.proposal.draft import draft_dialect

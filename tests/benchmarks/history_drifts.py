@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import tribolab as tl
-from tribolab.comparison.history import history_of
+from tribolab.comparison.instrument_history import history_of
 from tribolab.comparison.watched import Observation
 from tribolab.metrology.run_length import average_run_length, signal_probability
 

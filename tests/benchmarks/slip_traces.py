@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from scipy import signal
 
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 
 RATE = 50.0  # Hz
 FALL = {"sawtooth": 0.06, "reversed": 0.94}

@@ -38,7 +38,7 @@ from slip_traces import (
 from slip_traces import look as seen_in
 
 from tribolab.friction.oscillation.events import turning_points
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.rig.traces import simulate_trace
 

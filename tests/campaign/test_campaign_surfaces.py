@@ -22,7 +22,7 @@ from tribolab.campaign.store.catalogue import CATALOGUE, Store
 from tribolab.campaign.surfaces.plan import PlannedMedium, PlannedSurface, plan_surfaces
 from tribolab.campaign.surfaces.stage import Surfaces, SurfaceTask, process_surface
 from tribolab.cli import app
-from tribolab.contact.adhesion import macroscopic_work_of_adhesion
+from tribolab.contact.adhesive_contact import macroscopic_work_of_adhesion
 from tribolab.contact.hertz import hertz_mean_pressure, jkr_half_width
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.core.errors import ConfigError

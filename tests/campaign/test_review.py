@@ -27,7 +27,7 @@ from tribolab.campaign.settings.review import (
 from tribolab.cli import app
 from tribolab.core.errors import ConfigError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
-from tribolab.friction.decisions.decide import decide
+from tribolab.friction.decisions.decided_segments import decide
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
@@ -37,7 +37,7 @@ from tribolab.qc.run.checks import check_run
 from tribolab.reading.runs.read_run import read_run
 from tribolab.reading.schema_folder import schema_folder
 from tribolab.records.runs.decision_rows import decision_rows
-from tribolab.report.read_results import read_results
+from tribolab.report.results_folder import read_results
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 GLYCEROL, DRY = "curve_Sb-R_glycerol_31N", "curve_Sb-R_dry_31N"

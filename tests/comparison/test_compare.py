@@ -13,7 +13,7 @@ import tribolab as tl
 from tribolab import cli
 from tribolab.app.run import run_campaign
 from tribolab.comparison.calibration_terms import calibration_terms
-from tribolab.comparison.compare import CHANGED, UNCHANGED
+from tribolab.comparison.comparison import CHANGED, UNCHANGED
 from tribolab.comparison.folder import Folder
 from tribolab.comparison.run_values import MatchedRuns
 from tribolab.metrology.differences import (

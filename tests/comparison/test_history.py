@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.comparison.history import history_of
 from tribolab.comparison.history_page import history_verdict, write_history
+from tribolab.comparison.instrument_history import history_of
 from tribolab.comparison.watched import GAIN, REFERENCE, Observation, observations_of
 from tribolab.metrology.control_charts import (
     CUSUM,

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli
 from tribolab.app.run import run_campaign
-from tribolab.archive.pack import problems_of
+from tribolab.archive.packing import problems_of
 from tribolab.core.provenance import sha256_of_file
 
 NUMBERS = ("friction", "stribeck", "stick_slip", "static_friction", "sources")

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.adhesion_balance import rough_interface
+from tribolab.contact.adhesive_contact import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.core.errors import AnalysisError, TribolabError, UnitError
 from tribolab.studies import xu2026

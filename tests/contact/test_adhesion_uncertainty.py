@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 from contact_cases import E_STAR, SURFACES, reference_psd
 
-from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.adhesion_balance import rough_interface
-from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
+from tribolab.contact.adhesion_error import adhesion_uncertainty
+from tribolab.contact.adhesive_contact import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.work_of_adhesion import (
     PDMS_PMMA_GLYCEROL,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_cases import E_STAR, reference_psd
 
-from tribolab.contact.adhesion import adhesion
+from tribolab.contact.adhesive_contact import adhesion
 from tribolab.core.errors import AnalysisError
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, FractionalZener, TabulatedModulus

@@ -20,7 +20,7 @@ import xarray as xr
 from corpus.store import Case, Read, contents_of, write_case
 from tribolab.core.errors import TribolabError
 from tribolab.reading.dialect.find import Dialect
-from tribolab.reading.read import read as read_run
+from tribolab.reading.run_files import read as read_run
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.results import read_tester_results
 from tribolab.reading.unknown.proposal.draft import Draft

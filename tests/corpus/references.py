@@ -15,7 +15,7 @@ import numpy as np
 
 from corpus.store import HERE, SHARED
 from tribolab.core.errors import TribolabError
-from tribolab.reading.read import read as read_run
+from tribolab.reading.run_files import read as read_run
 from tribolab.reading.scan_files import read_scans
 from tribolab.rubber.modulus import read_modulus
 

@@ -10,7 +10,7 @@ from real_runs import actuator, paper, reciprocating, rock
 
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
-from tribolab.friction.coefficient.half_loops import half_loops
+from tribolab.friction.coefficient.friction_loop import half_loops
 from tribolab.friction.coefficient.steadiness import IS_NOT_STEADY, IS_STEADY, NOT_DECIDED, judged
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.zero.offsets import wander

@@ -6,13 +6,13 @@ from made_runs import strokes, with_friction
 
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
-from tribolab.friction.coefficient.half_loops import half_loops
+from tribolab.friction.coefficient.friction_loop import half_loops
 from tribolab.friction.decisions.bounds import LEFT
-from tribolab.friction.decisions.decide import decide
+from tribolab.friction.decisions.decided_segments import decide
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf

@@ -9,14 +9,14 @@ from zero_cases import BOTH, LOAD, MU, SPEED, analysed, doubts, off, programme
 
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
-from tribolab.friction.coefficient.half_loops import half_loops
+from tribolab.friction.coefficient.friction_loop import half_loops
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.zero.middles import middles
 from tribolab.friction.zero.offsets import wander
 from tribolab.friction.zero.rectified import ForceTrace, Pressed, folded
 from tribolab.friction.zero.rests import Zeros
 from tribolab.qc.run.checks import check_run
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 
 # drift
 

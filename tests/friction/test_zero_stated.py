@@ -9,7 +9,7 @@ from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.core.errors import ConfigError
 from tribolab.reading.netcdf.netcdf import read_netcdf
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 
 DIALECT = dialect_of(
     "one_rig", time="t", sliding_velocity="v", friction_force="F", normal_force="N"

@@ -1,10 +1,14 @@
 """The house: imports point down only, nothing runs in circles, and importing tribolab is cheap."""
 
 import ast
+import importlib
+import inspect
 import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
+from types import ModuleType
 
 import tribolab
 
@@ -92,10 +96,26 @@ def test_every_room_stands_in_the_plan():
     assert {room for room in ROOMS if f"tribolab.{room}" not in layers} == set()
 
 
-def test_no_public_name_is_hidden_by_a_module_beside_it():
-    modules = {file.stem for file in (PROJECT / "tribolab").iterdir()}
-    functions = {name for name in tribolab.__all__ if callable(getattr(tribolab, name))}
-    assert modules & functions == set()
+def hidden(faces: Iterable[ModuleType]) -> set[str]:
+    """Public functions with the name of a module in the folder of their own: it would hide them."""
+    values = [getattr(face, name) for face in faces for name in face.__all__]
+    return {
+        f"{value.__module__}.{value.__name__}"
+        for value in values
+        if inspect.isfunction(value)
+        for folder in [Path(inspect.getfile(value)).parent]
+        if (folder / f"{value.__name__}.py").exists() or (folder / value.__name__).is_dir()
+    }
+
+
+def test_no_public_function_has_the_name_of_a_module_in_its_folder(tmp_path, monkeypatch):
+    assert hidden([tribolab, tribolab.plot, tribolab.rig, tribolab.studies]) == set()
+    (tmp_path / "friction_of_paper.py").write_text(
+        "__all__ = ['friction_of_paper']\ndef friction_of_paper(): ...\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    made = importlib.import_module("friction_of_paper")
+    assert hidden([made]) == {"friction_of_paper.friction_of_paper"}
 
 
 def test_a_folder_holds_twenty_files_at_most():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_cases import CONTACT, E_STAR, reference_psd
 
-from tribolab.contact.adhesion import adhesion
+from tribolab.contact.adhesive_contact import adhesion
 from tribolab.contact.line import rough_line_contact
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.stribeck import stribeck_curve

@@ -10,7 +10,7 @@ from contact_cases import CONTACT, reference_psd
 
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.core.errors import AnalysisError, UnitError
-from tribolab.fit.model_uncertainty import model_uncertainty
+from tribolab.fit.model_error import model_uncertainty
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.patir_cheng import patir_cheng
 from tribolab.lubrication.stribeck import stribeck_curve

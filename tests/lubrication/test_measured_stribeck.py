@@ -13,7 +13,7 @@ from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.runs.logs import group_files
 from tribolab.records.frames import friction_columns, rows_of
 from tribolab.records.runs.run_facts import friction_facts

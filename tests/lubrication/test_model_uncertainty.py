@@ -7,7 +7,7 @@ import pytest
 from contact_cases import CONTACT, reference_psd
 
 from tribolab.core.errors import AnalysisError
-from tribolab.fit.model_uncertainty import model_uncertainty
+from tribolab.fit.model_error import model_uncertainty
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.surface.extrapolation import extrapolate

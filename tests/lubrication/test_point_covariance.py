@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 import tribolab as tl
 from tribolab.core.errors import AnalysisError
-from tribolab.fit.model_inputs import model_inputs, moved_friction
+from tribolab.fit.input_error import model_inputs, moved_friction
 from tribolab.fit.point_covariance import PointErrors
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress

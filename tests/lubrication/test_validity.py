@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from contact_cases import CONTACT, SURFACES, reference_psd, self_affine
 
-from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
+from tribolab.contact.adhesive_contact import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, jkr_half_width
@@ -17,7 +17,7 @@ from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.contact.separation import separation_table
 from tribolab.core.errors import AnalysisError
 from tribolab.core.validity import LIMITS, examine
-from tribolab.fit.model_uncertainty import model_uncertainty
+from tribolab.fit.model_error import model_uncertainty
 from tribolab.lubrication.factors import flow_factors, smooth_factors
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.stribeck import stribeck_curve

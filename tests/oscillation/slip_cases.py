@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.units.stamping import stamp
 
 

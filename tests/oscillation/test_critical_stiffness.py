@@ -6,7 +6,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from tribolab.friction.oscillation.critical_stiffness import critical_stiffness
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.records.runs.notices import distance_to_critical
 from tribolab.units.stamping import stamp

@@ -6,7 +6,7 @@ from slip_cases import a_run, noisy, seen, whole
 
 from tests.real_runs import paper
 from tribolab.core.errors import AnalysisError
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.rig import Protocol, Rig, StickSlip, simulate_run, simulate_trace

@@ -31,7 +31,7 @@ def test_the_path_of_a_module_that_has_moved_leads_to_it_with_a_warning():
         "import tribolab as tl; assert old is tl.compare"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "tribolab.across.compare is now tribolab.comparison.compare" in done.stderr
+    assert "tribolab.across.compare is now tribolab.comparison.comparison" in done.stderr
     for path in MOVED.values():
         importlib.import_module(path)
 

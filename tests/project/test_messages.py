@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli
 from tribolab.core import errors
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.dialect.find import load_dialect
 

@@ -17,7 +17,7 @@ from tribolab.qc.register import Check
 from tribolab.qc.run import checks as run_checks
 from tribolab.qc.scan import checks as scan_checks
 from tribolab.reading.kinds import kind_of
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.rig.files import scan_file
 

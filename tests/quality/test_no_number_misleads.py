@@ -9,7 +9,7 @@ from tribolab.campaign.settings.media import contradicting_viscosity
 from tribolab.friction.oscillation.spectrum.mains import find_mains
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 from tribolab.qc.signals import saturation
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.units.stamping import stamp
 
 RATE = 20.0

@@ -9,10 +9,10 @@ import xarray as xr
 from typer.testing import CliRunner
 
 from tribolab import cli
-from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.qc.run.checks import RUN_CHECKS, check_run
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run
 from tribolab.rig.files import force_file, motion_file, write_run
 from tribolab.units.stamping import stamp

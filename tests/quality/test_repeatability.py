@@ -183,7 +183,7 @@ def test_labels_come_from_the_campaign_file_as_it_is_now(original, tmp_path):
 
 def test_the_command_writes_a_page_and_its_tables(tmp_path, monkeypatch):
     table = measured(np.random.default_rng(7))
-    monkeypatch.setattr("tribolab.comparison.repeatability.labelled_segments", lambda place: table)
+    monkeypatch.setattr("tribolab.comparison.repeat_study.labelled_segments", lambda place: table)
     done = CliRunner().invoke(cli.app, ["lab", "repeatability", "x", "-o", str(tmp_path / "out")])
     assert done.exit_code == 0, done.stderr
     assert "between levels of mount" in done.stdout

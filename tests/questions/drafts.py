@@ -1,7 +1,7 @@
 """What the tests of drafted dialects share."""
 
 from tribolab.reading.dialect.find import load_dialect
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 

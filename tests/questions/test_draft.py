@@ -8,7 +8,7 @@ import pytest
 from drafts import drafted
 
 from tribolab.core.errors import OutputError, ReadError
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.results import read_tester_results
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from tribolab.cli import app
 from tribolab.core.errors import TribolabError
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 

@@ -6,8 +6,8 @@ import pytest
 from tribolab.app.info.file_info import file_lines
 from tribolab.core.errors import ReadError
 from tribolab.reading.kinds import kind_of
-from tribolab.reading.read import read
 from tribolab.reading.results_table import find_results_table
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.results import read_tester_results
 from tribolab.reading.unknown.proposal.draft import draft_dialect

@@ -13,7 +13,7 @@ from reviews import FROZEN, LATE, SLIP, SLIPPED, SOUND, rows_of
 from tribolab.app.run import run_campaign
 from tribolab.campaign.settings.review import REVIEW_FILE, load_review
 from tribolab.friction.coefficient.coefficient import friction_coefficient
-from tribolab.friction.decisions.decide import decide
+from tribolab.friction.decisions.decided_segments import decide
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.segments.find import find_segments
 from tribolab.reading.runs.read_run import read_run

@@ -11,7 +11,7 @@ from tribolab.app.checks import check_files
 from tribolab.core.errors import ConfigError, ReadError
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run.checks import RUN_CHECKS, check_run
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.rig import (
     FAULTS,
     Protocol,

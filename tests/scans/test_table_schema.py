@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tribolab.core.errors import ConfigError
 from tribolab.reading.netcdf.table_schema import load_schema, validate
-from tribolab.reading.read import read
+from tribolab.reading.run_files import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.schema_folder import schema_folder
 from tribolab.units.quantities import QUANTITIES

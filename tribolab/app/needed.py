@@ -30,11 +30,11 @@ ANALYSIS = (
     "tribolab.regime.words",
     "matplotlib.backends.backend_svg",
     "tribolab.figures.subjects.curves",
-    "tribolab.figures.look.draw",
+    "tribolab.figures.look.drawing",
     "tribolab.figures.subjects.contact",
     "tribolab.figures.subjects.mixed",
     "tribolab.figures.subjects.fits",
     "tribolab.figures.subjects.film",
     "tribolab.figures.subjects.slip",
-    "tribolab.figures.subjects.slip_spectra",
+    "tribolab.figures.subjects.slip_spectrum",
 )

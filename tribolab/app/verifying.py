@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tribolab.app.run import run_campaign
 from tribolab.archive.contents import campaign_of
-from tribolab.archive.pack import problems_of
+from tribolab.archive.packing import problems_of
 from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.store.catalogue import CATALOGUE
 from tribolab.campaign.store.data_files import digest

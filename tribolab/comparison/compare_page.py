@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tribolab import plot
-from tribolab.comparison.compare import CHANGED, Comparison
+from tribolab.comparison.comparison import CHANGED, Comparison
 from tribolab.comparison.page import Part, Picture, Sheet, cells, write_parts
 from tribolab.core.wording import many, percent, speed_text
 from tribolab.metrology.differences import DIFFERENT, EQUIVALENT, OPEN

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from tribolab import plot
-from tribolab.comparison.history import History, InstrumentHistory, expectations
+from tribolab.comparison.instrument_history import History, InstrumentHistory, expectations
 from tribolab.comparison.page import Part, Picture, Sheet, cells, write_parts
 from tribolab.core.wording import many
 from tribolab.metrology.control_charts import FEWEST_OF_BASELINE

@@ -30,7 +30,7 @@ from tribolab.metrology.planning import (
     runs_for_half_interval,
     runs_for_standard_error,
 )
-from tribolab.report.read_results import Results
+from tribolab.report.results_folder import Results
 
 _ASSURANCE = 0.8
 _TEN = 10  # number of runs for which the precision is listed

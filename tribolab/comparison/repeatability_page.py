@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tribolab import plot
 from tribolab.comparison.page import Part, Picture, Sheet, cells, write_parts
-from tribolab.comparison.repeatability import FEW, Repeatability, repeatability_verdict
+from tribolab.comparison.repeat_study import FEW, Repeatability, repeatability_verdict
 from tribolab.core.wording import many, percent
 from tribolab.report import tables
 

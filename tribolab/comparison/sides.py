@@ -11,7 +11,7 @@ import pandas as pd
 from tribolab.comparison.folder import Folder, open_folder
 from tribolab.comparison.run_values import segments_of, select_level
 from tribolab.core.errors import AnalysisError
-from tribolab.report.read_results import Results
+from tribolab.report.results_folder import Results
 
 Compared = str | Path | Results | pd.DataFrame
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.contact.adhesion import adhesion
+from tribolab.contact.adhesive_contact import adhesion
 from tribolab.contact.line import WIDTH_LEVEL
 from tribolab.units.conversion import to_si
 

@@ -12,8 +12,12 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 
 MOVED = {
+    "tribolab.across.compare": "tribolab.comparison.comparison",
+    "tribolab.across.history": "tribolab.comparison.instrument_history",
+    "tribolab.across.repeatability": "tribolab.comparison.repeat_study",
     "tribolab.across": "tribolab.comparison",
     "tribolab.conditions": "tribolab.arrays.conditions",
+    "tribolab.deposit.pack": "tribolab.archive.packing",
     "tribolab.deposit": "tribolab.archive",
     "tribolab.errors": "tribolab.core.errors",
     "tribolab.mode": "tribolab.regime",
@@ -50,7 +54,7 @@ def new_path(old: str) -> str:
     Examples
     --------
     >>> new_path("tribolab.across.compare")
-    'tribolab.comparison.compare'
+    'tribolab.comparison.comparison'
     >>> new_path("tribolab.friction")
     ''
     """

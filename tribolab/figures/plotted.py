@@ -65,7 +65,7 @@ def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
             **kwargs: Any,
         ) -> Figure:  # fmt: skip
             # imported late: a description needs no matplotlib
-            from tribolab.figures.look.draw import draw
+            from tribolab.figures.look.drawing import draw
 
             spec = describe(*args, **kwargs)
             return draw(spec, title=title, ax=ax if axes is None else axes, width=width)

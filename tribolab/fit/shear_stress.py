@@ -15,7 +15,7 @@ from tribolab.contact.geometry import Contact
 from tribolab.core.errors import AnalysisError, Cure, shown
 from tribolab.fit import limits
 from tribolab.fit.fit_settings import FitSettings, merge_old_settings
-from tribolab.fit.model_inputs import moved_friction
+from tribolab.fit.input_error import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress_fit import ShearStressFit

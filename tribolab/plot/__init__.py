@@ -9,9 +9,9 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribolab.figures.envelope import envelope
-    from tribolab.figures.look.draw import draw
-    from tribolab.figures.look.knobs import knobs
+    from tribolab.figures.envelopes import envelope
+    from tribolab.figures.look.controls import knobs
+    from tribolab.figures.look.drawing import draw
     from tribolab.figures.look.style import figure_data, paper_style, save, svg
     from tribolab.figures.subjects.adhesion import adhesive_area, effective_work
     from tribolab.figures.subjects.comparison import control, differences, forest
@@ -31,21 +31,21 @@ if TYPE_CHECKING:
         shear_stress,
         shear_stress_over_speed,
     )
-    from tribolab.figures.subjects.precision import precision, runs_needed, uncertainty_budget
+    from tribolab.figures.subjects.planning import precision, runs_needed, uncertainty_budget
     from tribolab.figures.subjects.signals_over_time import run
     from tribolab.figures.subjects.slip import Trace, slip_events, slip_traces, waveform_map
-    from tribolab.figures.subjects.slip_spectra import slip_spectra, slip_spectrogram
+    from tribolab.figures.subjects.slip_spectrum import slip_spectra, slip_spectrogram
     from tribolab.figures.subjects.spread import friction_spread, half_loop
     from tribolab.figures.subjects.starts import cycles, static_friction
-    from tribolab.figures.subjects.strokes import strokes
+    from tribolab.figures.subjects.stroke_loops import strokes
     from tribolab.figures.subjects.surfaces import modulus, profiles, spectra, viscoelastic
-    from tribolab.figures.subjects.trace import trace
+    from tribolab.figures.subjects.traces import trace
 
 # Loaded when first used: whoever wants a label waits for no matplotlib.
 _HOMES = {
-    "envelope": "tribolab.figures.envelope",
-    "draw": "tribolab.figures.look.draw",
-    "knobs": "tribolab.figures.look.knobs",
+    "envelope": "tribolab.figures.envelopes",
+    "draw": "tribolab.figures.look.drawing",
+    "knobs": "tribolab.figures.look.controls",
     "figure_data": "tribolab.figures.look.style",
     "paper_style": "tribolab.figures.look.style",
     "save": "tribolab.figures.look.style",
@@ -69,26 +69,26 @@ _HOMES = {
     "mixed_curve": "tribolab.figures.subjects.mixed",
     "shear_stress": "tribolab.figures.subjects.mixed",
     "shear_stress_over_speed": "tribolab.figures.subjects.mixed",
-    "precision": "tribolab.figures.subjects.precision",
-    "runs_needed": "tribolab.figures.subjects.precision",
-    "uncertainty_budget": "tribolab.figures.subjects.precision",
+    "precision": "tribolab.figures.subjects.planning",
+    "runs_needed": "tribolab.figures.subjects.planning",
+    "uncertainty_budget": "tribolab.figures.subjects.planning",
     "run": "tribolab.figures.subjects.signals_over_time",
     "Trace": "tribolab.figures.subjects.slip",
     "slip_events": "tribolab.figures.subjects.slip",
     "slip_traces": "tribolab.figures.subjects.slip",
     "waveform_map": "tribolab.figures.subjects.slip",
-    "slip_spectra": "tribolab.figures.subjects.slip_spectra",
-    "slip_spectrogram": "tribolab.figures.subjects.slip_spectra",
+    "slip_spectra": "tribolab.figures.subjects.slip_spectrum",
+    "slip_spectrogram": "tribolab.figures.subjects.slip_spectrum",
     "friction_spread": "tribolab.figures.subjects.spread",
     "half_loop": "tribolab.figures.subjects.spread",
     "cycles": "tribolab.figures.subjects.starts",
     "static_friction": "tribolab.figures.subjects.starts",
-    "strokes": "tribolab.figures.subjects.strokes",
+    "strokes": "tribolab.figures.subjects.stroke_loops",
     "modulus": "tribolab.figures.subjects.surfaces",
     "profiles": "tribolab.figures.subjects.surfaces",
     "spectra": "tribolab.figures.subjects.surfaces",
     "viscoelastic": "tribolab.figures.subjects.surfaces",
-    "trace": "tribolab.figures.subjects.trace",
+    "trace": "tribolab.figures.subjects.traces",
 }
 
 __all__ = [

@@ -16,7 +16,7 @@ import xarray as xr
 
 from tribolab.arrays.chunks import pieces
 from tribolab.arrays.scratch import room
-from tribolab.friction.decisions.decide import DECISIONS
+from tribolab.friction.decisions.decided_segments import DECISIONS
 from tribolab.friction.decisions.decision import ACCEPT, REJECT
 from tribolab.friction.decisions.rejected import rejected
 from tribolab.qc.findings import Findings

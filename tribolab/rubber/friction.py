@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf
 
-from tribolab.contact.adhesion import adhesion
+from tribolab.contact.adhesive_contact import adhesion
 from tribolab.contact.area import AreaTheory, area_of
 from tribolab.core.errors import AnalysisError
 from tribolab.core.validity import LIMITS, examine, together

@@ -80,7 +80,7 @@ def dry_contact(name: str) -> SurfaceGroups:
 def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
     """Solve adhesion at zero pressure, at the loads and over the grid in one call."""
     # imported late for a quick start
-    from tribolab.contact.adhesion import adhesion
+    from tribolab.contact.adhesive_contact import adhesion
     from tribolab.contact.hertz import hertz_mean_pressure
 
     forces = np.array(xu2026.system.loads)

@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
+from tribolab.contact.adhesive_contact import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.hertz import (
     hertz_half_width,
     hertz_max_pressure,

@@ -47,8 +47,8 @@ def compare(
     """
     with reported(debug):
         # imported late for a quick start
-        from tribolab.comparison.compare import compare as compared_with
         from tribolab.comparison.compare_page import comparison_verdict, write_comparisons
+        from tribolab.comparison.comparison import compare as compared_with
 
         if len(folders) == 1 and not by:
             raise ConfigError("one folder is compared with nothing: name another, or say --by")
@@ -97,8 +97,8 @@ def repeatability(
     """
     with reported(debug, audience="campaign"):
         # imported late for a quick start
-        from tribolab.comparison.repeatability import repeatability as repeated
-        from tribolab.comparison.repeatability import repeatability_verdict
+        from tribolab.comparison.repeat_study import repeatability as repeated
+        from tribolab.comparison.repeat_study import repeatability_verdict
         from tribolab.comparison.repeatability_page import write_repeatability
 
         told = repeated(campaign, by)
@@ -129,8 +129,8 @@ def history(
     """
     with reported(debug):
         # imported late for a quick start
-        from tribolab.comparison.history import history as followed
         from tribolab.comparison.history_page import history_verdict, write_history
+        from tribolab.comparison.instrument_history import history as followed
         from tribolab.comparison.watched import results_below
         from tribolab.metrology.control_charts import DEFAULT_RULES
 

@@ -44,7 +44,7 @@ def pack(
     """
     with reported(debug):
         # imported late for a quick start
-        from tribolab.archive import pack as packing
+        from tribolab.archive import packing
 
         if results.is_file():
             raise ConfigError(

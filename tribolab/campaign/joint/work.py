@@ -166,7 +166,7 @@ def _growth(
     pressure: np.ndarray, psd: xr.Dataset, contact: Contact, area: AreaTheory, work: Work
 ) -> _Growth:
     # imported late for a quick start
-    from tribolab.contact.adhesion import adhesion_by_works
+    from tribolab.contact.adhesive_contact import adhesion_by_works
 
     works = [max(w, 0.0) for w in (work.value, work.low, work.high)]
     solved = adhesion_by_works(pressure, psd, contact.effective_modulus, works, area)

@@ -17,9 +17,9 @@ from tribolab.core.errors import AnalysisError
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import explain, speed_text
 from tribolab.fit.fit_settings import FitSettings
+from tribolab.fit.input_error import model_inputs, moved_friction
 from tribolab.fit.left_out import left_out
-from tribolab.fit.model_inputs import model_inputs, moved_friction
-from tribolab.fit.model_uncertainty import model_uncertainty
+from tribolab.fit.model_error import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.unknowns import Unknowns
 from tribolab.lubrication.factors import flow_factors

@@ -77,7 +77,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
         If it cannot be read or analysed, or a decision finds no segment.
     """
     # imported late for a quick start
-    from tribolab.friction.decisions.decide import decide, remove_decisions
+    from tribolab.friction.decisions.decided_segments import decide, remove_decisions
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.temperature import sliding_area, sliding_temperature
 
@@ -145,7 +145,7 @@ def _evaluate(
 ) -> tuple[xr.Dataset, xr.Dataset, Findings]:
     # imported late for a quick start
     from tribolab.friction.coefficient.coefficient import friction_coefficient
-    from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.friction.oscillation.slip_segments import stick_slip
     from tribolab.friction.zero.of_run import StatedZeroError
     from tribolab.metrology.budget import known_uncertainties, segment_uncertainty
     from tribolab.qc.run.checks import check_run
@@ -172,7 +172,7 @@ def _add_uncertainties(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
 
 def _read(run: PlannedRun) -> xr.Dataset:
     # imported late for a quick start
-    from tribolab.friction.moving_mass import without_inertia
+    from tribolab.friction.inertia import without_inertia
     from tribolab.reading.unknown_run import read_run
 
     files = list(run.files)

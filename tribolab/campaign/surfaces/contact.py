@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from tribolab.campaign.surfaces.rubber import rubber_groups, rubber_objection
-from tribolab.contact.adhesion import adhesion_by_works
+from tribolab.contact.adhesive_contact import adhesion_by_works
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.geometry import Contact, PointContact, make_contact
 from tribolab.contact.hertz import (

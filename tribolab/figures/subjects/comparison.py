@@ -29,7 +29,7 @@ def differences(points: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     points
-        As in `tribolab.comparison.compare.Comparison`: ``condition``, ``sliding_speed_m_s``,
+        As in `tribolab.comparison.comparison.Comparison`: ``condition``, ``sliding_speed_m_s``,
         ``first``, ``difference``, ``low``, ``high`` and ``verdict``.
 
     Raises
@@ -103,7 +103,7 @@ def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second
     Parameters
     ----------
     quantities
-        As in `tribolab.comparison.compare.Comparison`: ``quantity``, ``of``, ``first``,
+        As in `tribolab.comparison.comparison.Comparison`: ``quantity``, ``of``, ``first``,
         ``difference``, ``low`` and ``high`` of 95 %, ``low_90`` and ``high_90``.
     names
         Names of the two campaigns, for the axis.
@@ -174,8 +174,8 @@ def control(table: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     table
-        Data of one chart, as `tribolab.comparison.history.InstrumentHistory` gives: ``when``,
-        ``value``, ``quantity``, ``unit``, ``baseline``, ``low``, ``high``, ``smoothed``,
+        Data of one chart, as `tribolab.comparison.instrument_history.InstrumentHistory` gives:
+        ``when``, ``value``, ``quantity``, ``unit``, ``baseline``, ``low``, ``high``, ``smoothed``,
         ``smoothed_low``, ``smoothed_high`` and ``signal``.
 
     Raises

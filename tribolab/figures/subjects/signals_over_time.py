@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.figures.colours import BLACK
-from tribolab.figures.envelope import envelope
+from tribolab.figures.envelopes import envelope
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import FigureSpec, Panel, Series, axis_of
 

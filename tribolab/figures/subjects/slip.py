@@ -13,7 +13,7 @@ from tribolab.core.errors import AnalysisError
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import number
 from tribolab.figures.colours import BLACK, GREY, PURPLE, SKY, shade_of, surface_colours
-from tribolab.figures.envelope import envelope
+from tribolab.figures.envelopes import envelope
 from tribolab.figures.labelled import OneOrSeveral, RunLabel, by_label, parts
 from tribolab.figures.plotted import plotted
 from tribolab.figures.signals import main_signal

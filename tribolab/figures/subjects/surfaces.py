@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError
 from tribolab.figures.colours import shade_of, surface_colours
-from tribolab.figures.envelope import envelope
+from tribolab.figures.envelopes import envelope
 from tribolab.figures.labelled import SurfaceOrSeveral, by_load, by_surface
 from tribolab.figures.labels import column
 from tribolab.figures.plotted import plotted

@@ -98,7 +98,7 @@ def stick_slip_curve(
     Examples
     --------
     >>> from tribolab.friction.segments.find import find_segments
-    >>> from tribolab.friction.oscillation.stick_slip import stick_slip
+    >>> from tribolab.friction.oscillation.slip_segments import stick_slip
     >>> from tribolab.rig import simulate_trace
     >>> run = simulate_trace("sawtooth", wavelength=22e-6, samples=1000, speed=1e-5)
     >>> curve = stick_slip_curve([stick_slip(run, find_segments(run))])

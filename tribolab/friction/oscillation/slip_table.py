@@ -63,7 +63,7 @@ def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.nd
 
 
 class SlipRow(NamedTuple):
-    """Results of one segment; see `tribolab.friction.oscillation.stick_slip` for each."""
+    """Results of one segment; see `tribolab.friction.oscillation.slip_segments` for each."""
 
     dominant_frequency: float
     dominant_frequency_sem: float

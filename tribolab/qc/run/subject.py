@@ -15,9 +15,9 @@ from tribolab.core.errors import AnalysisError
 from tribolab.core.wording import number as number_text
 from tribolab.core.wording import speed_text
 from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.oscillation.spectrum.lines import Line, segment_lines
 from tribolab.friction.oscillation.spectrum.noise import noise_level
-from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import consists_of_ramps, find_segments, why_no_segment
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip

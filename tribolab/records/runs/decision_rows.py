@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.wording import many
-from tribolab.friction.decisions.decide import DECISION_WORDS, DECISIONS
+from tribolab.friction.decisions.decided_segments import DECISION_WORDS, DECISIONS
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.decisions.rejected import rejected
 from tribolab.qc.register import OBJECTIONS

@@ -160,7 +160,8 @@ def distance_to_critical(slip: xr.Dataset) -> str:
     Parameters
     ----------
     slip
-        From `tribolab.friction.oscillation.stick_slip.stick_slip`, with the attributes of the run.
+        From `tribolab.friction.oscillation.slip_segments.stick_slip`, with the attributes of the
+        run.
 
     Notes
     -----

@@ -198,7 +198,7 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
     Parameters
     ----------
     slip
-        From `tribolab.friction.oscillation.stick_slip.stick_slip`.
+        From `tribolab.friction.oscillation.slip_segments.stick_slip`.
     """
     # imported late for a quick start
     from tribolab.friction.oscillation.slip_curve import STEADY_SLIDING, stick_slip_curve

@@ -13,7 +13,7 @@ from tribolab.arrays.chunks import one_by_one, samples_where
 from tribolab.arrays.scratch import let_go
 from tribolab.core.untyped import Json
 from tribolab.core.wording import speed_text
-from tribolab.figures.envelope import envelope_index, extremes_index
+from tribolab.figures.envelopes import envelope_index, extremes_index
 from tribolab.figures.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.records.packed import Clock, clock_of, pack_points

@@ -127,7 +127,7 @@ def draw_figure(spec: FigureSpec, folder: Path, *, pdf: bool = False) -> FigureR
         Whether to write it also as PDF.
     """
     # imported late: matplotlib is needed only to draw files
-    from tribolab.figures.look.draw import draw
+    from tribolab.figures.look.drawing import draw
 
     file = f"figures/{file_name(spec)}.svg"
     with DRAWING:

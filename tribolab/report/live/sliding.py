@@ -12,7 +12,7 @@ import xarray as xr
 
 from tribolab.core.wording import force_text, is_dry, number
 from tribolab.figures.colours import surface_colours
-from tribolab.figures.envelope import envelope_index
+from tribolab.figures.envelopes import envelope_index
 from tribolab.figures.signals import LOOKED_AT, main_signal
 from tribolab.figures.spec import (
     Axis,
@@ -26,7 +26,7 @@ from tribolab.figures.spec import (
 )
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.figures.subjects.slip import cumulative, waveform_map
-from tribolab.figures.subjects.slip_spectra import power_levels
+from tribolab.figures.subjects.slip_spectrum import power_levels
 from tribolab.records.models.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.report.live.curves import distinguish_media, labels_of, system_name

@@ -26,7 +26,7 @@ from tribolab.core.untyped import Json
 from tribolab.reading.raw.opening import largest_unpacked
 from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 from tribolab.report import tables
-from tribolab.report.read_results import Results
+from tribolab.report.results_folder import Results
 
 _BLOCK = 1 << 20
 

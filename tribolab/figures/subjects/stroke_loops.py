@@ -12,11 +12,11 @@ import xarray as xr
 from tribolab.core.errors import AnalysisError
 from tribolab.core.wording import aligned, speed_text
 from tribolab.figures.colours import BLACK, GREY, ORANGE, SKY
-from tribolab.figures.envelope import envelope
+from tribolab.figures.envelopes import envelope
 from tribolab.figures.plotted import plotted
 from tribolab.figures.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series
-from tribolab.figures.subjects.trace import MEAN, SHADES, Span, friction_axis
+from tribolab.figures.subjects.traces import MEAN, SHADES, Span, friction_axis
 
 _LINES = {1: BLACK, -1: ORANGE, 0: SKY}
 _MAX_PANELS, _MAX_LINES = 24, 6  # strokes; lines per direction and panel

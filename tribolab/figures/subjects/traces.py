@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.core.wording import speed_text
 from tribolab.figures.colours import BLACK, GREY, ORANGE, SKY, VERMILLION
-from tribolab.figures.envelope import envelope
+from tribolab.figures.envelopes import envelope
 from tribolab.figures.labels import column
 from tribolab.figures.plotted import plotted
 from tribolab.figures.signals import Signal, Stroke, main_signal, strokes_of

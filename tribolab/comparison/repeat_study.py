@@ -25,7 +25,7 @@ from tribolab.core.wording import many, speed_text
 from tribolab.metrology.gauge_study import gauge_study
 from tribolab.metrology.precision import LIMIT, mandel, mandel_limits, reproducibility_deviation
 from tribolab.metrology.reml import variance_components
-from tribolab.report.read_results import Results
+from tribolab.report.results_folder import Results
 
 _POOLED = "all speeds"
 FEW = 5  # levels of a factor below which its variance is very uncertain

@@ -178,7 +178,7 @@ def history(
 
     Examples
     --------
-    >>> from tribolab.comparison.history import history_of
+    >>> from tribolab.comparison.instrument_history import history_of
     >>> import datetime as dt
     >>> days = [dt.datetime(2026, 1, 1) + dt.timedelta(days=7 * k) for k in range(12)]
     >>> zeros = [0.1, 0.12, 0.09, 0.1, 0.11, 0.1, 0.1, 0.11, 0.09, 0.1, 0.11, 0.4]

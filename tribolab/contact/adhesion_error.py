@@ -7,8 +7,8 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from tribolab.arrays.broadcasting import over_dims
-from tribolab.contact.adhesion import AnyPressure, finite_pressures, pressure_coords
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface
+from tribolab.contact.adhesive_contact import AnyPressure, finite_pressures, pressure_coords
 from tribolab.contact.work_of_adhesion import (
     PDMS_PMMA_GLYCEROL,
     SurfaceEnergies,

@@ -127,7 +127,7 @@ def precision(table: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     table
-        As in `tribolab.comparison.repeatability.Repeatability`: ``sliding_speed_m_s``, ``mean``,
+        As in `tribolab.comparison.repeat_study.Repeatability`: ``sliding_speed_m_s``, ``mean``,
         ``repeatability_std``, ``between_..._std`` and ``reproducibility_std``; a row without a
         speed is omitted.
 
