@@ -51,7 +51,7 @@ def read_in_some_way(written: WrittenRun, folder: Path) -> HowRead:
         why = str(error)
     ways = [(DESCRIBED, kind.dialect)] if kind.dialect else []
     try:
-        toml = tl.draft_dialect(written.path).toml
+        toml = tl.reading.draft_dialect(written.path).toml
         for before, after in kind.typed:
             assert before in toml, f"'{before}' is not in the draft"
             toml = toml.replace(before, after)
@@ -102,7 +102,7 @@ def judge(written: WrittenRun, run: xr.Dataset) -> Judged:
 
 
 def _judge_cycles(written: WrittenRun, run: xr.Dataset) -> Judged:
-    cycles = tl.friction_per_cycle(run)
+    cycles = tl.friction.friction_per_cycle(run)
     mu = np.atleast_1d(cycles["mean_friction_coefficient"].values)
     sem = np.atleast_1d(cycles["mean_friction_coefficient_sem"].values)
     truth = np.atleast_1d(written.record.middle_friction_coefficient())

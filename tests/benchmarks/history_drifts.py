@@ -87,7 +87,7 @@ def main():
                 for name in ("report.json", "tables/stick_slip.csv"):
                     shutil.copy(chosen.results / name, mine / name)
             begun, since = time.process_time(), time.perf_counter()
-            tl.history(sorted(Path(folder).iterdir()))
+            tl.comparison.history(sorted(Path(folder).iterdir()))
             spent, wall = time.process_time() - begun, time.perf_counter() - since
         good = spent <= 5 * chosen.folders / 1000
         fine &= good

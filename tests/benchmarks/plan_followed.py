@@ -21,7 +21,7 @@ def followed(rng, plans, pilot_runs, assurance, asked=0.002):
     told = {"runs": [], "assured_runs": []}
     for _ in range(plans):
         pilot = pilot_table(rng, pilot_runs, 0.01)
-        plan = tl.measuring_plan(pilot, standard_error=asked, assurance=assurance).table
+        plan = tl.comparison.measuring_plan(pilot, standard_error=asked, assurance=assurance).table
         for name, errors in told.items():
             # what is out of reach is not followed: it would have been found small enough
             runs = 1000 if np.isnan(plan[name][0]) else int(plan[name][0])

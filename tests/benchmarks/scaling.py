@@ -20,7 +20,7 @@ import numpy as np
 
 SCAN = (
     "import sys, tribolab as tl; s = tl.read_scans(sys.argv[1]); "
-    "tl.roughness_parameters(s); tl.psd_1d(s)"
+    "tl.roughness_parameters(s); tl.surface.psd_1d(s)"
 )
 SPEEDS = (1e-4, 1e-3, 1e-2)  # m/s
 

@@ -170,7 +170,7 @@ def campaign(seed: int, of: Drawn, with_files: bool, counts: dict) -> float:
             friction_of(run, strokes, offset, f"mount {i}")
             for i, (run, strokes) in enumerate(zip(signals, found_in, strict=True))
         ]
-        budgets = [tl.uncertainty_budget(friction, known).data for friction in frictions]
+        budgets = [tl.metrology.uncertainty_budget(friction, known).data for friction in frictions]
         truths = [of_run(data, run.segments) for data, run in zip(budgets, runs, strict=True)]
         holds = [held(data, truth) for data, truth in zip(budgets, truths, strict=True)]
         if with_files:
@@ -179,7 +179,7 @@ def campaign(seed: int, of: Drawn, with_files: bool, counts: dict) -> float:
             segments = counts.setdefault((way, "segments", repeats), [])
             points = counts.setdefault((way, "curve points", repeats), [])
             segments += sum(holds[:repeats], [])
-            curve = tl.uncertainty_budget(frictions[:repeats], known).data
+            curve = tl.metrology.uncertainty_budget(frictions[:repeats], known).data
             truth = LAW(curve.sliding_speed.values)
             if repeats == 1:
                 truth = of_run(curve, runs[0].segments)

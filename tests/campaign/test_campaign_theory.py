@@ -137,7 +137,8 @@ def test_the_chosen_theory_of_the_area_is_in_every_table(results):
     psd = read_netcdf(results / "data/surface_Sb-S.nc", "psd")
     mine = contact[contact["surface"] == "Sb-S"].iloc[0]
     areas = [
-        tl.contact_area_ratio(mine["pressure_Pa"], psd, 2e6, a) for a in ("corrected", "persson")
+        tl.contact.contact_area_ratio(mine["pressure_Pa"], psd, 2e6, a)
+        for a in ("corrected", "persson")
     ]
     assert mine["contact_area_ratio"] == pytest.approx(areas[0], rel=1e-6)
     wet = adhesive[(adhesive["surface"] == "Sb-S") & (adhesive["medium"] == "glycerol")].iloc[0]
@@ -192,9 +193,9 @@ def test_a_larger_area_is_adhesive_by_the_same_ratio():
 
     psd, given = reference_psd("Sb-S"), ([4e4, 4e5], reference_psd("Sb-S"), 2e6)
     plain, corrected = (
-        tl.adhesion(*given, 51e-3, area=a, nodes=60) for a in ("persson", "corrected")
+        tl.contact.adhesion(*given, 51e-3, area=a, nodes=60) for a in ("persson", "corrected")
     )
-    free = tl.contact_area_ratio(np.array(given[0]), psd, 2e6, "corrected")
+    free = tl.contact.contact_area_ratio(np.array(given[0]), psd, 2e6, "corrected")
     np.testing.assert_allclose(corrected.contact_area_ratio_no_adhesion, free, rtol=2e-3)
     grown = np.minimum(corrected.contact_area_ratio_no_adhesion * plain.area_enhancement, 1.0)
     np.testing.assert_allclose(corrected.contact_area_ratio, grown, rtol=1e-12)
@@ -207,7 +208,7 @@ def test_the_range_of_the_work_of_adhesion_is_in_the_models_band():
     from contact_cases import CONTACT, reference_psd
 
     given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 1e6, "speed": [1e-7, 1e-1]}
-    band = tl.model_uncertainty(
+    band = tl.fit.model_uncertainty(
         CONTACT,
         reference_psd("Sb-S"),
         work_of_adhesion=51e-3,

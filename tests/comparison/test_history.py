@@ -227,7 +227,7 @@ def test_the_command_watches_an_archive_and_ends_with_one_on_a_signal(archive, t
     assert done.exit_code == 1, done.output
     assert "signals: zero of the friction force\n" in done.stdout
     assert "calibration due 2027-01-01 (interval)" in done.stdout
-    told = tl.history(sorted(archive.iterdir()), baseline=18)
+    told = tl.comparison.history(sorted(archive.iterdir()), baseline=18)
     names = {chart.quantity for chart in told.charts}
     assert {GAIN, "clock shift", "set-point error of the load", "noise of friction"} <= names
     assert any(name.startswith("friction of the reference at ") for name in names)
@@ -239,7 +239,7 @@ def test_the_command_watches_an_archive_and_ends_with_one_on_a_signal(archive, t
 
 
 def test_a_folder_that_is_no_results_is_left_out_and_told(archive, tmp_path):
-    told = tl.history([archive / "week_00", tmp_path])
+    told = tl.comparison.history([archive / "week_00", tmp_path])
     assert len(told.unread) == 1 and "no folder of results" in told.unread[0]
     done = CliRunner().invoke(
         cli.app, ["lab", "history", str(tmp_path), "-o", str(tmp_path / "out")]

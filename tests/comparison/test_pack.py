@@ -25,7 +25,9 @@ NUMBERS = ("friction", "stribeck", "stick_slip", "static_friction", "sources")
 def deposit(original, tmp_path_factory):
     """A packed campaign with its raw files."""
     folder = tmp_path_factory.mktemp("deposit")
-    return tl.pack(original.parent / "results", folder / "a.zip", raw=True, licence="CC-BY-4.0")
+    return tl.archive.pack(
+        original.parent / "results", folder / "a.zip", raw=True, licence="CC-BY-4.0"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -89,7 +91,7 @@ def test_names_that_steer_a_terminal_reach_no_page_table_or_member_as_they_are(t
     file = tmp_path / "campaign.toml"
     file.write_text('[campaign]\nname = "one"\n[[run]]\nfiles = "*.csv"\n')
     results = run_campaign(file, jobs=1, figures="none").folder
-    tl.pack(results, tmp_path / "one.zip", raw=True, licence="CC-BY-4.0")
+    tl.archive.pack(results, tmp_path / "one.zip", raw=True, licence="CC-BY-4.0")
     steers = re.compile("[\x07\x1b\x9b\u202e]")
     texts = [path for path in results.rglob("*") if path.suffix in (".csv", ".html", ".json")]
     assert not [path for path in texts if steers.search(path.read_text("utf-8"))]
@@ -149,10 +151,10 @@ def test_results_that_are_not_as_they_were_written_are_not_packed(original, tmp_
     table = file.parent / "results/tables/stribeck.csv"
     table.write_text(table.read_text("utf-8") + "x\n", "utf-8")
     with pytest.raises(tl.TribolabError, match="not as it was written"):
-        tl.pack(file.parent / "results", tmp_path / "a.zip")
+        tl.archive.pack(file.parent / "results", tmp_path / "a.zip")
     file.write_text(file.read_text("utf-8") + "\n", "utf-8")
     with pytest.raises(tl.TribolabError, match="changed since these results were made"):
-        tl.pack(file.parent / "results", tmp_path / "a.zip")
+        tl.archive.pack(file.parent / "results", tmp_path / "a.zip")
     assert not list(tmp_path.glob("*a.zip*"))
 
 

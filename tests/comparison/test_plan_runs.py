@@ -92,7 +92,7 @@ def test_a_plan_that_is_followed_reaches_its_precision():
     rng = np.random.default_rng(2)
     reached = {"runs": [], "assured_runs": []}
     for _ in range(200):
-        plan = tl.measuring_plan(pilot_table(rng, 4, 0.01), standard_error=0.002)
+        plan = tl.comparison.measuring_plan(pilot_table(rng, 4, 0.01), standard_error=0.002)
         for name, errors in reached.items():
             runs = int(plan.table[name][0])
             later = pilot_table(rng, runs, 0.01).friction_coefficient
@@ -104,13 +104,13 @@ def test_a_plan_that_is_followed_reaches_its_precision():
 
 def test_a_goal_out_of_reach_is_no_success_and_a_goal_in_reach_is_named(tmp_path):
     table = pilot_table(np.random.default_rng(3), 4, 0.01)
-    plan = tl.measuring_plan(table, standard_error=1e-5)
+    plan = tl.comparison.measuring_plan(table, standard_error=1e-5)
     text = plan_text(plan)
     assert text.startswith("standard error of 1e-05: out of reach at 1 of 1 point")
     within = float(text.split("10 runs reach ")[1].split(". ")[0])
-    assert tl.measuring_plan(table, standard_error=1.1 * within).table.runs.max() <= 20
+    assert tl.comparison.measuring_plan(table, standard_error=1.1 * within).table.runs.max() <= 20
     assert 'class="banner incomplete"' in write_plan(plan, "p", tmp_path).read_text("utf-8")
-    reached = tl.measuring_plan(table, standard_error=0.01)
+    reached = tl.comparison.measuring_plan(table, standard_error=0.01)
     assert reached._repr_html_().count("<tr") == 1 + len(reached.table)
     assert 'class="banner complete"' in write_plan(reached, "p", tmp_path).read_text("utf-8")
 
@@ -118,11 +118,11 @@ def test_a_goal_out_of_reach_is_no_success_and_a_goal_in_reach_is_named(tmp_path
 def test_a_plan_asks_for_one_precision_and_for_two_runs(tmp_path):
     table = pilot_table(np.random.default_rng(3), 4, 0.01)
     with pytest.raises(tl.TribolabError, match="say one precision"):
-        tl.measuring_plan(table, standard_error=0.1, half_interval=0.1)
+        tl.comparison.measuring_plan(table, standard_error=0.1, half_interval=0.1)
     with pytest.raises(tl.TribolabError, match="no condition and speed has two runs"):
-        tl.measuring_plan(table.head(1), standard_error=0.1)
+        tl.comparison.measuring_plan(table.head(1), standard_error=0.1)
     with pytest.raises(tl.TribolabError, match="an assurance of 1.5"):
-        tl.measuring_plan(table, standard_error=0.1, assurance=1.5)
+        tl.comparison.measuring_plan(table, standard_error=0.1, assurance=1.5)
 
 
 def test_the_command_plans_after_a_campaign(original, tmp_path):

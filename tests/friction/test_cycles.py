@@ -41,7 +41,7 @@ def crank(
 @pytest.mark.parametrize("known", ["position", "sliding_velocity"])
 def test_each_cycle_has_its_coefficient_whatever_the_zero(known):
     run = crank().drop_vars({"position", "sliding_velocity"} - {known})
-    cycles = tl.friction_per_cycle(run, "40 %")
+    cycles = tl.friction.friction_per_cycle(run, "40 %")
     assert cycles.sizes["cycle"] in (50, 51, 52)
     assert cycles["friction_coefficient"].values == pytest.approx(MU, abs=0.005)
     error = float(cycles["mean_friction_coefficient"] - MU)
@@ -56,11 +56,11 @@ def test_each_cycle_has_its_coefficient_whatever_the_zero(known):
 
 
 def test_the_loops_energy_is_that_of_the_closed_form():
-    stiff = tl.friction_per_cycle(crank(noise=0.0, rate=2000.0))
+    stiff = tl.friction.friction_per_cycle(crank(noise=0.0, rate=2000.0))
     assert stiff["friction_coefficient_energy"].values == pytest.approx(MU, rel=0.01)
     # a parallelogram: area 4 F (A - F/k) for limits +-F, half stroke A, stiffness k
     stiffness = 5e3
-    soft = tl.friction_per_cycle(crank(stiffness=stiffness, noise=0.0, rate=2000.0))
+    soft = tl.friction.friction_per_cycle(crank(stiffness=stiffness, noise=0.0, rate=2000.0))
     force = MU * LOAD
     energy = MU * (1 - force / stiffness / HALF)
     assert soft["friction_coefficient_energy"].values == pytest.approx(energy, rel=0.02)
@@ -68,7 +68,7 @@ def test_the_loops_energy_is_that_of_the_closed_form():
 
 
 def test_wear_is_a_trend_over_the_cycles():
-    cycles = tl.friction_per_cycle(crank(wear=0.2))
+    cycles = tl.friction.friction_per_cycle(crank(wear=0.2))
     assert float(cycles["trend_change"]) == pytest.approx(0.2 * MU, rel=0.1)
     assert float(cycles["trend_p_value"]) < 1e-6
     assert float(cycles["mean_friction_coefficient"]) == pytest.approx(1.1 * MU, rel=0.01)
@@ -79,8 +79,8 @@ def test_lost_signs_are_asked_for_and_then_used():
     run = crank(offset=0.0)
     lost = run.assign(friction_force=np.abs(run["friction_force"]))
     with pytest.raises(AnalysisError, match="one sign in both directions"):
-        tl.friction_per_cycle(lost)
-    told = tl.friction_per_cycle(lost.assign_attrs(friction_force_rectified=True))
+        tl.friction.friction_per_cycle(lost)
+    told = tl.friction.friction_per_cycle(lost.assign_attrs(friction_force_rectified=True))
     assert told["friction_coefficient"].values == pytest.approx(MU, abs=0.01)
     assert np.isnan(told["friction_coefficient_energy"].values).all()
 
@@ -134,7 +134,7 @@ def test_no_stroke_goes_across_a_pause_of_the_logger(known):
 )
 def test_what_is_no_reciprocating_run_is_told(change, said):
     with pytest.raises(AnalysisError, match=said):
-        tl.friction_per_cycle(change(crank()))
+        tl.friction.friction_per_cycle(change(crank()))
 
 
 def test_the_first_and_the_last_turn_of_a_record_are_turns():

@@ -57,7 +57,9 @@ def test_a_static_record_of_a_dead_weight_tells_the_gain_in_the_history(tmp_path
 def test_the_gain_comes_out_within_its_error(on):
     pulls = []
     for seed in range(30):
-        told = tl.dead_weight_gain(run_of(*loaded(np.random.default_rng(seed), on)), "19.62 N")
+        told = tl.metrology.dead_weight_gain(
+            run_of(*loaded(np.random.default_rng(seed), on)), "19.62 N"
+        )
         pulls.append((told.gain - TRUE) / told.error)
         assert told.zero == pytest.approx(0.12, abs=0.01)
     assert 0.5 < np.std(pulls) < 1.5 and abs(np.mean(pulls)) < 0.6
@@ -66,6 +68,6 @@ def test_the_gain_comes_out_within_its_error(on):
 def test_without_a_step_there_is_no_gain():
     time, force = loaded(np.random.default_rng(1), on=((-1, 99),))
     with pytest.raises(AnalysisError, match="without the weight"):
-        tl.dead_weight_gain(run_of(time, force), WEIGHT)
+        tl.metrology.dead_weight_gain(run_of(time, force), WEIGHT)
     with pytest.raises(AnalysisError, match="'friction_force'"):
-        tl.dead_weight_gain(run_of(time, force), WEIGHT, "friction_force")
+        tl.metrology.dead_weight_gain(run_of(time, force), WEIGHT, "friction_force")

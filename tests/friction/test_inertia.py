@@ -47,7 +47,7 @@ def test_the_mass_under_a_crank_is_found_within_its_error(mass, frequency, by):
     off = []
     for seed in range(6):
         motion = crank(10e-3, frequency, 40, 100 * frequency)
-        known = tl.moving_mass(made(motion, mass, seed, by=by)[0])
+        known = tl.friction.moving_mass(made(motion, mass, seed, by=by)[0])
         assert known.pairs > 35 and known.error < 0.01 * mass
         off.append((known.mass - mass) / known.error)
     assert np.abs(off).max() < 4 and 0.3 < np.sqrt(np.mean(np.square(off))) < 2
@@ -59,14 +59,14 @@ def test_data_that_do_not_tell_a_mass_change_nothing():
     once = made(carried_out([Leg(0.0, 1.0), Leg(0.1, 5.0)], 200.0), 3.0)[0]
     light = made(crank(10e-3, 0.5, 40, 50.0), 1.0)[0]  # 0.05 N of 7 N
     for run in (still, even, once, light, still.drop_vars("friction_force")):
-        assert tl.moving_mass(run) is None
-        assert tl.without_inertia(run).identical(run)
+        assert tl.friction.moving_mass(run) is None
+        assert tl.friction.without_inertia(run).identical(run)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_stated_mass_is_taken_out_of_ramps_however_the_force_is_counted(sign):
     run, wanted = made(strokes(), 3.0, sign=sign)
-    mended = tl.without_inertia(run, "3 kg")
+    mended = tl.friction.without_inertia(run, "3 kg")
     before, after = (np.abs(r["friction_force"].values - wanted) for r in (run, mended))
     ramps = np.abs(strokes().acceleration) > 0
     assert before[ramps].mean() > 2.0 * 3.0 * 0.45  # 6 N, and none in the ramp's first sample
@@ -77,7 +77,7 @@ def test_a_stated_mass_is_taken_out_of_ramps_however_the_force_is_counted(sign):
         run["friction_force"].values
     )
     with pytest.raises(AnalysisError, match="taken out of the run before"):
-        tl.without_inertia(mended, 3.0)
+        tl.friction.without_inertia(mended, 3.0)
 
 
 def test_the_derivatives_of_a_parabola_are_exact_and_noise_is_told():

@@ -102,7 +102,7 @@ for _key in ("files", "scans", "modulus_file"):
 for _call in (
     "tl.read('passwd')",
     "tl.read_scans('passwd', x_unit='mm', height_unit='um')",
-    "tl.read_modulus('passwd')",
+    "tl.rubber.read_modulus('passwd')",
     "tl.read_results('passwd')",
 ):
 

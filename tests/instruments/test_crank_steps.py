@@ -32,7 +32,7 @@ def _written(path: Path, blocks: tuple[tuple[float | None, float, float], ...]) 
 
 
 def _drafted(path: Path, file: Path) -> Path:
-    return save_draft(tl.draft_dialect(file), path / "rig.toml")
+    return save_draft(tl.reading.draft_dialect(file), path / "rig.toml")
 
 
 def test_each_block_slides_at_its_own_frequency_and_stroke(tmp_path: Path) -> None:

@@ -53,7 +53,7 @@ def test_what_is_drafted_from_columns_is_written_down_and_reads_the_file(name, t
     path = write_kind(name, tmp_path).path
     at_once = tl.read(path)
     assert at_once.attrs["instrument"] == "drafted from the file"
-    toml = tl.draft_dialect(path).toml
+    toml = tl.reading.draft_dialect(path).toml
     (tmp_path / "kept.toml").write_text(toml)
     assert tl.read(path, tmp_path / "kept.toml").drop_attrs().identical(at_once.drop_attrs())
     if name == "feather":  # the command does the same with each
@@ -71,7 +71,7 @@ def test_a_sheet_with_units_below_its_names_is_told_from_one_of_words(tmp_path):
     with book:
         words.to_excel(book, sheet_name="About", index=False, header=False)
         pd.DataFrame(rows).to_excel(book, sheet_name="Lauf", index=False, header=False)
-    dialect = tl.draft_dialect(tmp_path / "run.xlsx").dialect
+    dialect = tl.reading.draft_dialect(tmp_path / "run.xlsx").dialect
     assert (dialect.header.sheet, dialect.header.line, dialect.header.units) == ("Lauf", 2, "row")
     run = tl.read(tmp_path / "run.xlsx")
     assert run.sizes["time"] == 200 and run["friction_force"].values[7] == 3.0
@@ -82,10 +82,10 @@ def test_columns_without_numbers_are_no_run(tmp_path):
     with pytest.raises(ReadError, match="no known instrument writes such a file"):
         tl.read(tmp_path / "words.parquet")
     with pytest.raises(ReadError, match="no columns of numbers"):
-        tl.draft_dialect(tmp_path / "words.parquet")
+        tl.reading.draft_dialect(tmp_path / "words.parquet")
     (tmp_path / "bad.parquet").write_bytes(b"PAR1 and no more")
     with pytest.raises(ReadError, match="this parquet file cannot be read"):
-        tl.draft_dialect(tmp_path / "bad.parquet")
+        tl.reading.draft_dialect(tmp_path / "bad.parquet")
 
 
 @pytest.mark.parametrize("unit", ["Nm", "N m", "mNm", "Nmm", "Ncm", "N-m", "µNm"])

@@ -63,7 +63,7 @@ def test_axes_without_units_are_in_the_unit_of_the_load_that_one_of_them_reads(
     file = tmp_path / "PAO_20N_100mms.txt"
     drag = 2 * np.sign(np.sin(T))
     file.write_text(SIX_AXES + rows(drag, 0.1 * drag, -20.3))
-    units = {c.label: c.unit for c in tl.draft_dialect(file).understood.columns if c.used}
+    units = {c.label: c.unit for c in tl.reading.draft_dialect(file).understood.columns if c.used}
     assert units == {"Fx": "N", "Fz": "N"}
     other = tmp_path / "PAO_200N_100mms.txt"  # what it reads is no 200 N
     other.write_text(file.read_text())

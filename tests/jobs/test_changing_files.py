@@ -139,6 +139,6 @@ def test_a_scan_and_a_modulus_are_watched_too(tmp_path, monkeypatch):
 
     spoil(scans, "read_content")
     spoil(modulus_tables, "_text")
-    for reader, path in ((tl.read_scans, profile), (tl.read_modulus, table)):
+    for reader, path in ((tl.read_scans, profile), (tl.rubber.read_modulus, table)):
         with pytest.raises(ReadError, match=rf"{path.name}: the file changes while it is read"):
             reader(path)

@@ -7,6 +7,7 @@ import doctest
 import inspect
 import tomllib
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -18,7 +19,8 @@ PROJECT = Path(__file__).resolve().parents[2]
 
 def public():
     """Yield name and object of everything public that can be called."""
-    for home in (tl, tl.plot, tl.rig, xu2026):
+    groups = [value for name in tl.__all__ if isinstance(value := getattr(tl, name), ModuleType)]
+    for home in (tl, *groups, xu2026):
         names = getattr(home, "__all__", None) or [
             name
             for name, thing in vars(home).items()

@@ -60,7 +60,7 @@ def load_curves(curves, rng=None, speed=SPEEDS, loads=LOADS, level=0.0, **truth)
 def test_one_computed_curve_serves_every_viscosity(curves):
     at = tl.stribeck_curve(CONTACT, PSD, 2.3, 910.0, 0.0, SPEEDS, cells=60)
     fluid, _, area, _ = response_of(curves.sel(load=910.0)).at(np.log(2.3 * SPEEDS))
-    whole = tl.with_shear_stress(at, STRESS).friction_coefficient
+    whole = tl.lubrication.with_shear_stress(at, STRESS).friction_coefficient
     np.testing.assert_allclose(fluid + STRESS * area, whole, rtol=3e-3)
     assert not np.allclose(whole, friction(curves, 910.0, eta=1.4, n=0, m=0), rtol=0.02)
 
@@ -464,23 +464,23 @@ def test_datasets_over_load_and_surface_are_taken_apart(curves):
     rows = [measured(friction(curves, load)) for load in LOADS]
     table = xr.concat(rows, loads.normal_force)
     given = (table, CONTACT, PSD, "1.4 Pa s")
-    whole = tl.fit_shear_stress_jointly(*given, loads, curves=curves)
+    whole = tl.fit.fit_shear_stress_jointly(*given, loads, curves=curves)
     assert whole.curves.curve.values.tolist() == ["31 N", "91 N", "211 N"]
     assert whole.marginal("viscosity").value == pytest.approx(ETA, rel=0.01)
-    again = tl.fit_shear_stress_jointly(
+    again = tl.fit.fit_shear_stress_jointly(
         table.expand_dims(surface=["fine"]), *given[1:], loads, curves=curves
     )
     assert again.marginal("shear_stress").value == whole.marginal("shear_stress").value
-    adhesive = tl.fit_shear_stress_jointly(
+    adhesive = tl.fit.fit_shear_stress_jointly(
         *given, loads, curves=curves, area_enhancement=1.25 + 0 * loads
     )
     assert adhesive.marginal("shear_stress").value == pytest.approx(
         whole.marginal("shear_stress").value / 1.25, rel=0.01
     )
     with pytest.raises(AnalysisError, match="choose one value"):
-        tl.fit_shear_stress_jointly(table.expand_dims(medium=["oil"]), *given[1:], loads)
+        tl.fit.fit_shear_stress_jointly(table.expand_dims(medium=["oil"]), *given[1:], loads)
     with pytest.raises(AnalysisError, match="a load in N/m is wanted for each"):
-        tl.fit_shear_stress_jointly(*given, "310 N/m")
+        tl.fit.fit_shear_stress_jointly(*given, "310 N/m")
 
 
 def test_points_that_cannot_be_taken_are_counted_and_unknown_errors_refused(curves):

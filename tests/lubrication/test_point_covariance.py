@@ -99,7 +99,7 @@ def test_a_model_is_sufficient_where_shared_errors_make_what_it_misses(truth):
 
 
 def test_glycerol_at_half_a_degree_reaches_the_points_by_the_speed(bare, truth):
-    known = tl.liquid_viscosity("glycerol", "23 °C", "1 %")
+    known = tl.lubrication.liquid_viscosity("glycerol", "23 °C", "1 %")
     relative = known.uncertainty(0.5 / np.sqrt(3), 0.01 / np.sqrt(3))
     model = with_shear_stress(bare, 0.84e6).assign_attrs(abscissa_error=relative)
     mu, slope = truth[0].friction_coefficient.values, truth[1]

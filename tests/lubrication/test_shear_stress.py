@@ -64,7 +64,7 @@ def test_what_is_no_curve_is_refused_in_one_line_that_names_the_function_to_make
     with pytest.raises(AnalysisError, match="over 'time'; tl.measured_stribeck_curve") as told:
         fit(other)
     assert len(str(told.value)) < 200
-    with pytest.raises(AnalysisError, match="tl.fit_shear_stresses fits every curve"):
+    with pytest.raises(AnalysisError, match="tl.fit.fit_shear_stresses fits every curve"):
         fit(measured(0.02).expand_dims(surface=["Sb-S"]))
 
 

@@ -22,7 +22,20 @@ def test_import_is_lazy():
 
 def test_every_public_name_resolves():
     for name in tribolab.__all__:
-        assert getattr(tribolab, name) is not None
+        face = getattr(tribolab, name)
+        for inner in getattr(face, "__all__", []):
+            assert getattr(face, inner) is not None
+
+
+def test_a_name_that_left_the_top_level_says_where_it_is():
+    assert "adhesion" not in dir(tribolab)
+    with pytest.warns(FutureWarning, match=r"tl\.adhesion is now tl\.contact\.adhesion") as said:
+        assert tribolab.adhesion is tribolab.contact.adhesion
+    assert [warning.filename for warning in said] == [__file__]
+    for name, group in tribolab._FORMERLY_HERE.items():
+        assert name in dir(getattr(tribolab, group))
+    with pytest.raises(AttributeError, match="no attribute 'adhesions'"):
+        _ = tribolab.adhesions
 
 
 def test_the_path_of_a_module_that_has_moved_leads_to_it_with_a_warning():

@@ -113,7 +113,9 @@ def measured(rng, mounts=6, runs=3, between=0.04, within=0.02):
 
 
 def test_components_are_told_per_speed_and_pooled():
-    told = tl.repeatability(measured(np.random.default_rng(5), mounts=40), "medium:mount")
+    told = tl.comparison.repeatability(
+        measured(np.random.default_rng(5), mounts=40), "medium:mount"
+    )
     assert told.method == "restricted maximum likelihood"
     shown = told._repr_html_()
     assert "by medium:mount" in shown and shown.count("<tr") == 1 + len(told.table)
@@ -122,7 +124,7 @@ def test_components_are_told_per_speed_and_pooled():
     assert last.repeatability_std == pytest.approx(0.02, rel=0.15)
     assert last["between_medium:mount_std"] == pytest.approx(0.04, rel=0.2)
     assert last.reproducibility_limit == pytest.approx(2.8 * last.reproducibility_std)
-    crossed = tl.repeatability(measured(np.random.default_rng(5)), "mount")
+    crossed = tl.comparison.repeatability(measured(np.random.default_rng(5)), "mount")
     assert crossed.method.startswith("analysis of variance")
 
 
@@ -142,7 +144,7 @@ def test_what_cannot_be_told_apart_is_refused(by, says):
     table = measured(np.random.default_rng(6))
     table = table.assign(twin=table.mount + "t", rig="a", own=table.run)
     with pytest.raises(tl.TribolabError, match=says):
-        tl.repeatability(table, by)
+        tl.comparison.repeatability(table, by)
 
 
 @pytest.mark.parametrize(

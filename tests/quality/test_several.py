@@ -21,7 +21,7 @@ def each(function):
 def test_spectra_of_several_surfaces_are_those_of_each():
     for name in NAMES:
         both = PSDS.sel(surface=name), xu2026.psd(name, points=1201)
-        several, alone = (tl.spectral_roughness(psd).isel(wavenumber=-1) for psd in both)
+        several, alone = (tl.surface.spectral_roughness(psd).isel(wavenumber=-1) for psd in both)
         for quantity in ("rms_roughness", "rms_slope"):
             assert several[quantity].item() == pytest.approx(alone[quantity].item(), rel=1e-9)
 
@@ -29,11 +29,13 @@ def test_spectra_of_several_surfaces_are_those_of_each():
 @pytest.mark.parametrize(
     "function",
     [
-        lambda psd: tl.contact_area_ratio("42 kPa", psd, MODULUS),
-        lambda psd: tl.mean_separation(xr.DataArray([1e4, 1e5], dims="pressure"), psd, MODULUS),
-        lambda psd: tl.adhesion("42 kPa", psd, MODULUS, 0.05, nodes=60).contact_area_ratio,
-        lambda psd: tl.macroscopic_work_of_adhesion(psd, MODULUS, 0.05, nodes=60).pull_off,
-        lambda psd: tl.spectral_roughness(psd).rms_slope,
+        lambda psd: tl.contact.contact_area_ratio("42 kPa", psd, MODULUS),
+        lambda psd: tl.contact.mean_separation(
+            xr.DataArray([1e4, 1e5], dims="pressure"), psd, MODULUS
+        ),
+        lambda psd: tl.contact.adhesion("42 kPa", psd, MODULUS, 0.05, nodes=60).contact_area_ratio,
+        lambda psd: tl.contact.macroscopic_work_of_adhesion(psd, MODULUS, 0.05, nodes=60).pull_off,
+        lambda psd: tl.surface.spectral_roughness(psd).rms_slope,
         lambda psd: (
             tl.stribeck_curve(
                 xu2026.contact, psd, 1.4, 310.0, "1 MPa", [1e-5, 1e-3], cells=60
@@ -51,16 +53,16 @@ def test_a_further_dim_of_the_spectrum_is_a_dim_of_the_result(function):
 
 def test_media_and_surfaces_give_both_dims_and_a_doubt_about_one_is_kept():
     works = xr.DataArray([0.064, 0.051], {"medium": ["dry", "wet"]}, "medium")
-    found = tl.adhesion(4.2e4, PSDS, MODULUS, works, nodes=60)
+    found = tl.contact.adhesion(4.2e4, PSDS, MODULUS, works, nodes=60)
     assert found.contact_area_ratio.dims == ("surface", "medium")
-    alone = tl.adhesion(4.2e4, PSDS.sel(surface="Sb-R"), MODULUS, 0.051, nodes=60)
+    alone = tl.contact.adhesion(4.2e4, PSDS.sel(surface="Sb-R"), MODULUS, 0.051, nodes=60)
     one = found.sel(surface="Sb-R", medium="wet")
     assert one.contact_area_ratio.item() == alone.contact_area_ratio.item()
     assert set(tl.plot.figure_data(tl.plot.effective_work(found)).series) == {
         f"{name}, {medium}" for name in NAMES for medium in ("dry", "wet")
     }
     steep = xr.concat([PSDS.sel(surface="Sb-S"), 4 * PSDS.sel(surface="Sb-R")], "surface")
-    doubted = tl.contact_area_ratio(xr.DataArray([4.2e4], dims="pressure"), steep, MODULUS)
+    doubted = tl.contact.contact_area_ratio(xr.DataArray([4.2e4], dims="pressure"), steep, MODULUS)
     assert doubted.attrs["validity"] == "suspect" and doubted.attrs["validity_reasons"]
 
 
@@ -69,8 +71,10 @@ def test_spectra_on_wavenumbers_of_their_own_stand_in_one_dataset():
     index = xr.DataArray(NAMES, dims="surface", name="surface")
     joined = xr.concat(alone, index, join="outer", data_vars="all", combine_attrs="drop_conflicts")
     assert joined.psd_2d.isnull().any()
-    areas = tl.contact_area_ratio(4.2e4, joined, MODULUS)
-    assert areas.values.tolist() == [tl.contact_area_ratio(4.2e4, one, MODULUS) for one in alone]
+    areas = tl.contact.contact_area_ratio(4.2e4, joined, MODULUS)
+    assert areas.values.tolist() == [
+        tl.contact.contact_area_ratio(4.2e4, one, MODULUS) for one in alone
+    ]
     drawn = tl.plot.figure_data(tl.plot.spectra(joined))
     assert len(drawn) == sum(one.wavenumber.size for one in alone)
 
@@ -79,7 +83,7 @@ def test_arrays_that_do_not_name_their_dim_are_refused_where_there_are_further_o
     with pytest.raises(
         AnalysisError, match="mean_separation: .* arrays must name theirs; give .*DataArray"
     ):
-        tl.mean_separation(np.array([1e4, 1e5]), PSDS, MODULUS)
+        tl.contact.mean_separation(np.array([1e4, 1e5]), PSDS, MODULUS)
 
 
 def test_a_list_of_runs_is_analysed_run_by_run():
@@ -128,7 +132,7 @@ def test_objections_to_several_runs_stand_in_one_table_by_their_labels():
     frozen[200:600] = frozen[200]
     both = [clean, clean.assign(friction_coefficient=frozen)]
     findings = tl.check(both)
-    table = tl.objections(findings, rig=["new", "old"])
+    table = tl.qc.objections(findings, rig=["new", "old"])
     own = findings[1].table
     assert (
         table[table.rig == "old"].check.tolist()
@@ -136,20 +140,20 @@ def test_objections_to_several_runs_stand_in_one_table_by_their_labels():
     )
     assert "stuck" in set(table[table.rig == "old"].check) - set(table[table.rig == "new"].check)
     with pytest.raises(AnalysisError, match="1 labels are given for 2"):
-        tl.objections(findings, rig=["new"])
+        tl.qc.objections(findings, rig=["new"])
 
 
 def test_the_error_from_blocks_of_noise_with_memory_is_that_of_the_closed_form():
     rho, n = 0.9, 400_000  # AR(1): variance of the mean is s2 / n (1 + rho) / (1 - rho)
     noise = np.random.default_rng(8).standard_normal(n)
     signal = scipy.signal.lfilter([np.sqrt(1 - rho**2)], [1, -rho], noise)
-    blocks = tl.error_from_blocks(signal, [1, 1000])
+    blocks = tl.friction.error_from_blocks(signal, [1, 1000])
     exact = np.sqrt([1 / n, (1 + rho) / (1 - rho) / n])
     off = (blocks.standard_error - exact) / blocks.standard_error_std
     assert abs(off.isel(block_length=1)) < 3
     assert blocks.standard_error[0] == pytest.approx(exact[0], rel=0.02)
     with pytest.raises(AnalysisError, match="1 to 200000 samples"):
-        tl.error_from_blocks(signal, [n])
+        tl.friction.error_from_blocks(signal, [n])
 
 
 def test_modes_of_several_surfaces_are_those_of_each():
@@ -170,14 +174,14 @@ def test_modes_of_several_surfaces_are_those_of_each():
         },
         {"surface": NAMES},
     )
-    known = tl.Mode(pressure=4.2e4, fluid=False)
-    modes = tl.sliding_modes(curve, None, slip, known, adhesion=adhesion)
+    known = tl.regime.Mode(pressure=4.2e4, fluid=False)
+    modes = tl.regime.sliding_modes(curve, None, slip, known, adhesion=adhesion)
     assert [labels["surface"] for labels, _ in modes] == NAMES
     assert [mode.verdict for _, mode in modes] == [
         "no stick-slip",
         "adhesion-controlled macroscopic instability suspected",
     ]
-    mine = tl.Mode(
+    mine = tl.regime.Mode(
         pressure=4.2e4,
         fluid=False,
         work_of_adhesion=4e-3,
@@ -185,12 +189,12 @@ def test_modes_of_several_surfaces_are_those_of_each():
         area_ratio=0.9,
     )
     part = [data.isel(surface=1, sliding_speed=slice(4), drop=True) for data in (curve, slip)]
-    alone = tl.sliding_mode(part[0], None, part[1], mine, name=NAMES[1])
+    alone = tl.regime.sliding_mode(part[0], None, part[1], mine, name=NAMES[1])
     assert modes.sel(surface=NAMES[1]).paragraph == alone.paragraph
     assert alone.text in modes._repr_html_() and alone.text in repr(modes)
     assert set(modes.to_dataframe().surface) == set(NAMES)
     with pytest.raises(AnalysisError, match="no further dim"):
-        tl.sliding_modes(part[0])
+        tl.regime.sliding_modes(part[0])
 
 
 def test_stick_slip_of_several_runs_is_drawn_by_its_labels():

@@ -39,7 +39,7 @@ def measured(spectra):
 @pytest.fixture(scope="module")
 def fits(measured, spectra):
     load = xr.DataArray(LOADS, {"normal_force": [31.0, 91.0]})
-    return tl.fit_shear_stresses(measured, xu2026.contact, spectra, "1.4 Pa s", load, **GRID)
+    return tl.fit.fit_shear_stresses(measured, xu2026.contact, spectra, "1.4 Pa s", load, **GRID)
 
 
 @pytest.mark.slow
@@ -77,22 +77,22 @@ def test_what_was_not_measured_is_not_fitted_and_says_so(fits):
 def test_a_condition_that_cannot_be_fitted_is_named(measured, spectra):
     few = measured.isel(sliding_speed=slice(0, 1))
     with pytest.raises(AnalysisError, match=r"(?s)Sb-S.*at least 2"):
-        tl.fit_shear_stresses(few, xu2026.contact, spectra, 1.4, 310.0, **GRID)
+        tl.fit.fit_shear_stresses(few, xu2026.contact, spectra, 1.4, 310.0, **GRID)
     with pytest.raises(AnalysisError, match="surface 'Sb-R'"):
         other = spectra.sel(surface=["Sb-S"])
-        tl.fit_shear_stresses(measured, xu2026.contact, other, 1.4, 310.0, **GRID)
+        tl.fit.fit_shear_stresses(measured, xu2026.contact, other, 1.4, 310.0, **GRID)
     with pytest.raises(AnalysisError, match="fit it with fit_shear_stress$"):
         one = measured.isel(surface=0, normal_force=0, drop=True)
         psd = spectra.isel(surface=0, drop=True)
-        tl.fit_shear_stresses(one, xu2026.contact, psd, 1.4, 310.0)
+        tl.fit.fit_shear_stresses(one, xu2026.contact, psd, 1.4, 310.0)
 
 
 def test_a_stress_for_each_curve_is_added_to_each(spectra):
     bare = tl.stribeck_curve(xu2026.contact, spectra, 1.4, 310.0, 0.0, SPEEDS, **GRID)
     stress = xr.DataArray([1e6, 2e6], {"surface": SURFACES})
-    curves = tl.with_shear_stress(bare, stress)
+    curves = tl.lubrication.with_shear_stress(bare, stress)
     for surface, value in zip(SURFACES, stress.values, strict=True):
-        alone = tl.with_shear_stress(bare.sel(surface=surface), float(value))
+        alone = tl.lubrication.with_shear_stress(bare.sel(surface=surface), float(value))
         xr.testing.assert_equal(
             curves.friction_coefficient.sel(surface=surface), alone.friction_coefficient
         )
@@ -125,9 +125,9 @@ def test_labels_make_dims_of_measured_curves():
 
 def test_relative_factors_are_those_of_each_surface(spectra):
     over = np.array([0.3, 1.0, 3.0])
-    both = tl.relative_flow_factors(spectra, over)
+    both = tl.lubrication.relative_flow_factors(spectra, over)
     for surface in SURFACES:
-        table = tl.flow_factors(spectra.sel(surface=surface).dropna("wavenumber"))
+        table = tl.lubrication.flow_factors(spectra.sel(surface=surface).dropna("wavenumber"))
         alone = table.dataset(over * table.rms_roughness)
         for name in alone.data_vars:
             np.testing.assert_array_equal(both[name].sel(surface=surface), alone[name])

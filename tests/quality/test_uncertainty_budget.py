@@ -132,7 +132,9 @@ def runs_that_scatter(friction, share):
 def test_the_numbers_for_scale_come_out(mu, tilt, one_way, both_ways):
     for friction, per_cent in ((one_segment(mu, 50.0), one_way), (as_pair(mu, 50.0), both_ways)):
         friction = friction.assign(sliding_speed=("segment", np.full(friction.segment.size, 1e-3)))
-        budget = tl.uncertainty_budget(runs_that_scatter(friction, 0.03), published(tilt)).data
+        budget = tl.metrology.uncertainty_budget(
+            runs_that_scatter(friction, 0.03), published(tilt)
+        ).data
         relative = 100 * float(budget.friction_coefficient_u[0]) / mu
         digit = 0.1 if per_cent < 2 else 1
         assert relative == pytest.approx(per_cent, abs=digit / 2, rel=0.005)
@@ -140,7 +142,7 @@ def test_the_numbers_for_scale_come_out(mu, tilt, one_way, both_ways):
 
 def test_one_per_cent_at_a_twentieth_wants_the_tilt_within_three_hundredths_of_a_degree():
     tilt = {"tilt": {"value": "0.03 deg", "as": "standard"}}
-    budget = tl.uncertainty_budget(one_segment(0.05, 50.0), tilt).data
+    budget = tl.metrology.uncertainty_budget(one_segment(0.05, 50.0), tilt).data
     assert float(budget.friction_coefficient_u[0]) / 0.05 == pytest.approx(0.01, rel=0.06)
 
 
@@ -202,7 +204,7 @@ def test_u95_of_few_runs_beside_a_calibration_holds_95_per_cent(runs, ratio):
 
 def test_a_student_factor_is_taken_once():
     friction = one_segment(0.3, 50.0, friction_coefficient_sem=0.01, friction_coefficient_dof=3.0)
-    data = tl.uncertainty_budget(friction).data
+    data = tl.metrology.uncertainty_budget(friction).data
     assert float(data.friction_coefficient_dof[0]) == 3
     assert float(data.friction_coefficient_U95[0]) == pytest.approx(3.182 * 0.01, rel=1e-3)
     assert float(data.friction_coefficient_u[0]) == pytest.approx(0.01)
@@ -215,7 +217,7 @@ def test_what_varies_with_run_or_mount_is_not_added_to_runs_that_show_it():
     zero = {"friction_zero": {"value": "0.1 N", "as": "standard"}, **gain()}
 
     def part(frictions, stated, name):
-        data = tl.uncertainty_budget(frictions, stated).data
+        data = tl.metrology.uncertainty_budget(frictions, stated).data
         return float(data.uncertainty_part.sel(part=name)[0])
 
     assert part(runs[:1], zero, "friction_zero") == pytest.approx(0.1 / 50)
@@ -233,7 +235,7 @@ def gain():
 def test_a_single_run_of_a_curve_says_noise_and_several_say_runs():
     speed = {"sliding_speed": 1e-3, "friction_coefficient_sem": 1e-4}
     runs = runs_that_scatter(one_segment(0.1, 50.0, **speed), 0.03)
-    alone, together = (tl.uncertainty_budget(some).data for some in (runs[:1], runs))
+    alone, together = (tl.metrology.uncertainty_budget(some).data for some in (runs[:1], runs))
     assert alone.part.values.tolist() == ["noise and known zero of the run"]
     assert together.part.values.tolist() == ["between runs"]
     assert float(together.friction_coefficient_dof[0]) == pytest.approx(4, rel=1e-3)
@@ -243,7 +245,7 @@ def test_a_single_run_of_a_curve_says_noise_and_several_say_runs():
 
 
 def test_the_table_is_what_papers_print():
-    budget = tl.uncertainty_budget(one_segment(0.1, 50.0), published(1.0) | gain())
+    budget = tl.metrology.uncertainty_budget(one_segment(0.1, 50.0), published(1.0) | gain())
     table = budget.table(0)
     assert table.index[0] == "tilt" and table.index[-1] == "combined"
     assert table.share.iloc[:-1].sum() == pytest.approx(1)
@@ -257,7 +259,7 @@ def test_the_table_is_what_papers_print():
 
 
 def test_without_calibration_it_says_statistical_only():
-    assert tl.uncertainty_budget(one_segment(0.1, 50.0)).says == (
+    assert tl.metrology.uncertainty_budget(one_segment(0.1, 50.0)).says == (
         "calibration not stated: statistical only"
     )
 
@@ -291,12 +293,12 @@ def test_what_is_stated_becomes_a_standard_uncertainty(table, name, standard):
 )
 def test_what_is_wrong_in_a_statement_is_said(stated, words):
     with pytest.raises(TribolabError, match=words):
-        tl.uncertainty_budget(one_segment(0.1, 50.0), stated)
+        tl.metrology.uncertainty_budget(one_segment(0.1, 50.0), stated)
 
 
 def test_a_run_without_normal_force_is_told_what_cannot_be_counted():
     friction = one_segment(0.1, 50.0).drop_vars("normal_force")
-    budget = tl.uncertainty_budget(friction, published(1.0))
+    budget = tl.metrology.uncertainty_budget(friction, published(1.0))
     assert "no normal force was recorded: friction linearity" in budget.says
     assert np.isfinite(budget.data.friction_coefficient_u).all()
 
@@ -317,7 +319,7 @@ def test_ten_thousand_segments_take_less_than_half_a_second():
         {k: ("segment", v) for k, v in data.items()}, attrs={"offset": "half loop"}
     )
     began = time.process_time()
-    tl.uncertainty_budget(friction, published(1.0))
+    tl.metrology.uncertainty_budget(friction, published(1.0))
     assert time.process_time() - began < 0.5
 
 
@@ -338,7 +340,7 @@ def by_instrument(*names, gain="1 %"):
 
 def test_runs_of_one_instrument_share_its_gain_and_those_of_several_do_not():
     def gains(runs):
-        data = tl.uncertainty_budget(runs).data
+        data = tl.metrology.uncertainty_budget(runs).data
         rows = data.uncertainty_part.sel(part=[n for n in data.part.values if "gain" in n])
         return dict(zip(rows.part.values.tolist(), rows.values[:, 0].round(7), strict=True))
 
@@ -352,18 +354,18 @@ def test_runs_of_one_instrument_share_its_gain_and_those_of_several_do_not():
 def test_each_run_of_a_curve_has_the_uncertainty_that_is_stated_of_it():
     first, second = by_instrument("a", gain="1 %"), by_instrument("b", gain="3 %")
     runs = [*first, *first, *second, *second]
-    budget = tl.uncertainty_budget(runs)
+    budget = tl.metrology.uncertainty_budget(runs)
     parts = budget.data.uncertainty_part.sel(part=["friction_gain, a", "friction_gain, b"])
     np.testing.assert_allclose(parts.values[:, 0], [0.0005, 0.0015])
     assert budget.table().loc["friction gain, b", "u"] == pytest.approx(0.03)
     assert budget.says == ""
     bare = [run.drop_attrs().assign_attrs(instrument="c") for run in first]
-    assert tl.uncertainty_budget([*runs, *bare]).says == "calibration of c not stated"
+    assert tl.metrology.uncertainty_budget([*runs, *bare]).says == "calibration of c not stated"
 
 
 def test_a_recalibrated_instrument_has_two_gains():
     runs = [*by_instrument("a", "a", gain="1 %"), *by_instrument("a", "a", gain="2 %")]
-    names = tl.uncertainty_budget(runs).data.part.values.tolist()
+    names = tl.metrology.uncertainty_budget(runs).data.part.values.tolist()
     assert names == ["between runs", "friction_gain, a 1", "friction_gain, a 2"]
 
 
@@ -374,7 +376,7 @@ def test_a_stated_zero_counts_once_in_a_curve_of_one_run():
     run = one_segment(0.1, 50.0, sliding_speed=1e-3, friction_coefficient_sem=sem)
     run = run.assign_attrs(zero_stated=0.1)
     for given in (run, [run]):
-        data = tl.uncertainty_budget(given, zero).data
+        data = tl.metrology.uncertainty_budget(given, zero).data
         assert float(data.friction_coefficient_u[0]) == pytest.approx(sem, rel=1e-6)
         assert float(data.uncertainty_part.sel(part="noise and known zero of the run")[0]) == (
             pytest.approx(noise, rel=1e-6)
@@ -384,7 +386,7 @@ def test_a_stated_zero_counts_once_in_a_curve_of_one_run():
 def test_the_figure_says_where_an_uncertainty_is_statistical_only():
     def told(stated):
         friction = one_segment(0.1, 50.0, friction_coefficient_sem=1e-3)
-        figure = tl.plot.uncertainty_budget(tl.uncertainty_budget(friction, stated))
+        figure = tl.plot.uncertainty_budget(tl.metrology.uncertainty_budget(friction, stated))
         return [text.get_text() for text in figure.axes[0].get_yticklabels()]
 
     assert any("statistical" in label for label in told(None))

@@ -53,7 +53,7 @@ def test_a_file_that_says_everything_is_read_and_says_how_to_keep_the_draft(good
     assert float(mu.friction_coefficient[0]) == pytest.approx(0.2, abs=0.002)
     [same] = tl.read(good.parent / "*.csv")
     assert same.friction_force.equals(run.friction_force)
-    by_hand = tl.read(good, tl.draft_dialect(good).dialect)
+    by_hand = tl.read(good, tl.reading.draft_dialect(good).dialect)
     assert by_hand.friction_force.equals(run.friction_force)
 
 

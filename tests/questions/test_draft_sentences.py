@@ -97,7 +97,7 @@ def test_a_load_cell_is_asked_about_unless_another_force_or_the_load_tells(tmp_p
     head = "Time [s]\tSpeed [mm/s]\tLoad cell [N]"
     path = table(tmp_path / "a.txt", head, T, 5.0, LOAD)
     assert "the name means friction force (or normal_force" in refusal(path)
-    assert not tl.draft_dialect(path).understood.columns[2].used
+    assert not tl.reading.draft_dialect(path).understood.columns[2].used
     path = table(tmp_path / "b.txt", f"Load set: 12 N\n{head}", T, 5.0, LOAD)
     assert "it is the normal force: it reads what 'Load set: 12 N' says" in refusal(path)
     path = table(tmp_path / "c.txt", f"Load set: 12 N\n{head}", T, 5.0, FORCE)
@@ -144,7 +144,7 @@ def test_a_sentence_states_strokes_a_speed_and_a_load(tmp_path):
     assert tl.read(path).attrs["set_speed_m_s"] == pytest.approx(0.005)
     fastest = table(tmp_path / "c.txt", head.replace("speed", "max speed"), T, 100 * FORCE, LOAD)
     assert "set_speed_m_s" not in tl.read(fastest).attrs
-    run = tl.read(path, tl.draft_dialect(path).dialect)
+    run = tl.read(path, tl.reading.draft_dialect(path).dialect)
     assert run.attrs["set_speed_m_s"] == pytest.approx(5e-3)
 
 

@@ -526,7 +526,7 @@ def test_what_is_said_before_each_step_is_that_of_the_step(tmp_path):
     radii, loads = np.repeat([10e-3, 20e-3, 25e-3], N), np.repeat([5.0, 5.0, 8.0], N)
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * radii, rtol=1e-6)
     np.testing.assert_allclose(run.normal_force, loads)
-    toml = tl.draft_dialect(file).toml.replace('source = "step"', 'source = "preamble"')
+    toml = tl.reading.draft_dialect(file).toml.replace('source = "step"', 'source = "preamble"')
     (tmp_path / "a.toml").write_text(toml)
     with pytest.raises(tl.TribolabError, match=r"is 10 before the first table and 20 before a"):
         tl.read(file, tmp_path / "a.toml")

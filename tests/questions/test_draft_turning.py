@@ -189,7 +189,7 @@ def test_of_a_torque_in_divisions_only_what_one_is_worth_is_missing(tmp_path):
     assert [lack[:40] for lack in error.value.lacks] == [
         "what one number of the torque 'Mтр, дел.'"[:40]
     ]
-    draft = corrected(tl.draft_dialect(path), "torque", 4, "N m", scale=0.0125)
+    draft = corrected(tl.reading.draft_dialect(path), "torque", 4, "N m", scale=0.0125)
     run = tl.read(path, draft.dialect)
     assert coefficient(run) == pytest.approx(40 * 0.0125 / 0.025 / (50 * 9.80665), rel=2e-3)
 

@@ -110,7 +110,7 @@ def sparse_workbook(path: Path) -> None:
             archive.writestr(name, text)
 
 
-@pytest.mark.parametrize("reader", [tl.read, tl.read_scans, tl.read_modulus])
+@pytest.mark.parametrize("reader", [tl.read, tl.read_scans, tl.rubber.read_modulus])
 def test_a_workbook_of_two_far_cells_costs_one_message(reader, tmp_path):
     sparse_workbook(tmp_path / "a.xlsx")
     with pytest.raises(ReadError, match=r"a\.xlsx"):

@@ -137,7 +137,7 @@ def test_no_command_opens_what_is_no_regular_file(command, name, tmp_path, monke
         Path(name).rename("own.json")
         name = "own.json"
     if command in ("scans", "modulus", "schema"):
-        reader = {"scans": tribolab.read_scans, "modulus": tribolab.read_modulus}
+        reader = {"scans": tribolab.read_scans, "modulus": tribolab.rubber.read_modulus}
         with pytest.raises(TribolabError, match=f"{name}.*not a regular file"):
             reader.get(command, load_schema)(Path(name))
         return

@@ -54,7 +54,7 @@ def test_findings_without_objection_need_no_table(spiked):
 def test_a_draft_shows_what_was_understood_and_what_to_fill_in(tmp_path):
     file = tmp_path / "own.txt"
     file.write_text("Zeit [s];Reibkraft [N];Weg <x>\n0,0;1,5;0,1\n0,1;1,6;0,2\n")
-    draft = tl.draft_dialect(file)
+    draft = tl.reading.draft_dialect(file)
     shown = draft._repr_html_()
     assert "friction_force" in shown and "decimal comma" in shown
     assert all(f"fill in line {line} of the TOML" in shown for line in draft.to_fill_in)
@@ -110,7 +110,8 @@ def test_a_figure_with_knobs_is_an_output_of_the_cell_and_follows_them(monkeypat
 def test_films_are_drawn_alike_from_a_list_and_from_one_dataset():
     contact = tl.LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     films = [
-        tl.film_profile(contact, None, "1.4 Pa s", "310 N/m", v, cells=60) for v in (1e-3, 1e-2)
+        tl.lubrication.film_profile(contact, None, "1.4 Pa s", "310 N/m", v, cells=60)
+        for v in (1e-3, 1e-2)
     ]
     rows = [f.reset_index("x").reset_coords("x").rename_dims(x="point") for f in films]
     joined = xr.concat(rows, "sliding_speed", combine_attrs="drop_conflicts")

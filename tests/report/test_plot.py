@@ -373,7 +373,7 @@ def test_long_names_beside_stick_slip_stay_on_the_paper():
     stack = [plot.Trace(label, run, segments, None, 0, "basalt") for label in ("dry", name)]
     for figure in (
         plot.slip_traces(stack),
-        plot.waveform_map({name: tl.stick_slip_curve([slip])}),
+        plot.waveform_map({name: tl.friction.stick_slip_curve([slip])}),
         plot.slip_spectrogram({name: slip}),
     ):
         canvas = FigureCanvasAgg(figure)

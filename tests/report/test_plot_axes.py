@@ -34,7 +34,7 @@ def drawings():
     fit["friction_coefficient_sem"] = fit["friction_coefficient_residual"] = 0.01 * (
         fit.friction_coefficient
     )
-    spread = tl.model_uncertainty(
+    spread = tl.fit.model_uncertainty(
         xu2026.contact, None, speed=[1e-3, 1e-1], shear_stress=0.0, **given
     )
     several = tl.stribeck_curve(
@@ -42,20 +42,22 @@ def drawings():
     )
     points = several[["friction_coefficient"]].isel(sliding_speed=slice(3, -3))
     points["friction_coefficient_sem"] = 0.02 * points.friction_coefficient
-    jointly = tl.fit_shear_stress_jointly(
+    jointly = tl.fit.fit_shear_stress_jointly(
         points, xu2026.contact, psd, 1.4, points["load"], curves=several
     )
     stated = {"tilt": {"value": "1 deg", "as": "half-width"}}
-    budget = tl.uncertainty_budget(friction, stated)
-    film = tl.film_profile(xu2026.contact, psd, speed=1e-3, **given)
-    factors = tl.flow_factors(psd)
+    budget = tl.metrology.uncertainty_budget(friction, stated)
+    film = tl.lubrication.film_profile(xu2026.contact, psd, speed=1e-3, **given)
+    factors = tl.lubrication.flow_factors(psd)
     factors = factors.dataset(factors.rms_roughness * np.geomspace(0.3, 3, 5))
     trace = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
     places = tl.find_segments(trace)
     slip = tl.stick_slip(trace, places)
     pressure = xr.DataArray([1e4, 1e5], {"pressure": [1e4, 1e5]}, "pressure")
-    area = tl.contact_area_ratio(pressure, psd, "2 MPa").to_dataset(name="contact_area_ratio")
-    sticky = tl.adhesion(pressure, psd, 2e6, 0.05, nodes=60).expand_dims(medium=["dry"])
+    area = tl.contact.contact_area_ratio(pressure, psd, "2 MPa").to_dataset(
+        name="contact_area_ratio"
+    )
+    sticky = tl.contact.adhesion(pressure, psd, 2e6, 0.05, nodes=60).expand_dims(medium=["dry"])
     wide = {"separation": [1e-6, 2e-6, 3e-6]}
     pressed = xr.Dataset({"contact_pressure": ("separation", [2e5, 3e4, 5e3])}, wide)
     moduli = {f"{k}_modulus": ("angular_frequency", [1e6, 1e7]) for k in ("storage", "loss")}
@@ -126,11 +128,13 @@ def drawings():
             lambda **k: plot.effective_work({"Sb-S": sticky.isel(pressure=0)}, **k), 1, "dry",
         ),
         "gaps": (
-            lambda **k: plot.gaps({"Sb-S": tl.gap_distribution(4e4, psd, 2e6)}, **k), 1, "Sb-S",
+            lambda **k: plot.gaps({"Sb-S": tl.contact.gap_distribution(4e4, psd, 2e6)}, **k),
+            1,
+            "Sb-S",
         ),
         "line_pressure": (
             lambda **k: plot.line_pressure(
-                {"Sb-S": tl.rough_line_contact(310.0, xu2026.contact, psd, points=101)}, **k
+                {"Sb-S": tl.contact.rough_line_contact(310.0, xu2026.contact, psd, points=101)}, **k
             ),
             1,
             "Sb-S",
@@ -161,7 +165,7 @@ def drawings():
             "dry",
         ),
         "waveform_map": (
-            lambda **k: plot.waveform_map({"dry": tl.stick_slip_curve([slip])}, **k),
+            lambda **k: plot.waveform_map({"dry": tl.friction.stick_slip_curve([slip])}, **k),
             1,
             "sawtooth stick-slip",
         ),

@@ -1,1 +1,21 @@
 """Archives of results with their raw data and metadata, for a repository."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tribolab.core.public_names import loaded_on_use
+
+if TYPE_CHECKING:
+    from tribolab.archive.packing import pack
+
+__all__ = [
+    "pack",
+]
+
+__getattr__, __dir__ = loaded_on_use(
+    __name__,
+    {
+        "pack": "packing",
+    },
+)

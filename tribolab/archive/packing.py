@@ -76,7 +76,7 @@ def pack(
     --------
     >>> import tribolab as tl
     >>> try:
-    ...     tl.pack("nothing")
+    ...     tl.archive.pack("nothing")
     ... except tl.TribolabError as error:
     ...     print(str(error)[:30])
     nothing: no folder of results:

@@ -60,8 +60,8 @@ def fit_shear_stress(
         ``friction_coefficient`` (sliding_speed) with ``_sem`` or else ``_std``. Points that are not
         finite, or at speed 0, are left out. The segments of one run, as `friction_coefficient`
         returns them, are combined by `measured_stribeck_curve` first. Parts of the uncertainty that
-        the points share (``uncertainty_part``, from `tribolab.uncertainty_budget`) are treated as
-        shared.
+        the points share (``uncertainty_part``, from `tribolab.metrology.uncertainty_budget`) are
+        treated as shared.
     contact, psd, liquid, load, interface, solver
         As for `stribeck_curve`, with one load; the shear stress of the interface is ignored.
     settings
@@ -253,7 +253,7 @@ def _over_speed(measured: xr.Dataset) -> xr.Dataset:
         if given is not None:
             over = f"is over {', '.join(map(repr, given.dims)) or 'none'}"
             if "sliding_speed" in given.dims:
-                cure = "tl.fit_shear_stresses fits every curve"
+                cure = "tl.fit.fit_shear_stresses fits every curve"
         raise AnalysisError(
             f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}",
             cure=Cure(notebook=cure),

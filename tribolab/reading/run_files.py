@@ -60,8 +60,8 @@ def read(
         files of consecutive cycles, in any order if they say when they start.
     instrument
         Name of a known instrument, path of a TOML description of your own, or a dialect such as
-        ``tl.draft_dialect(path).dialect``. Without it the instrument is recognised by the file's
-        content; text that none is known to write is read all the same where its header says
+        ``tl.reading.draft_dialect(path).dialect``. Without it the instrument is recognised by the
+        file's content; text that none is known to write is read all the same where its header says
         what every column is, and ``instrument`` is then "drafted from the file".
     pair
         Also read the companion log, if the instrument writes one and it lies beside the file.

@@ -61,6 +61,12 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
     -----
     Contact is computed at the exact mean Hertz pressure of each load (the paper rounds it), with
     the stand-in spectra of `tribolab.studies.xu2026`.
+
+    Examples
+    --------
+    >>> rows = [row for row in xu2026.published if row.quantity == "nominal_pressure"]
+    >>> compare_with_paper(rows).loc[0, ["published", "computed", "status"]].tolist()
+    ['0.042 MPa', '0.0417 MPa', 'reproduced']
     """
     theory = Theory()
     compared = []

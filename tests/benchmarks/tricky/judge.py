@@ -63,7 +63,7 @@ def main_file(trial: Trial) -> str:
 def write_dialects(trial: Trial, folder: Path) -> Path:
     """Write the dialects; without one, it is drafted from the file, and taken as it comes."""
     if not trial.dialects:
-        draft = tl.draft_dialect(folder / main_file(trial))
+        draft = tl.reading.draft_dialect(folder / main_file(trial))
         if draft.to_fill_in:
             raise TribolabError(f"the draft asks: {'; '.join(draft.to_fill_in.values())}")
         (folder / f"{draft.name}.toml").write_text(draft.toml, "utf-8")

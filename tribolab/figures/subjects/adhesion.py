@@ -44,7 +44,8 @@ def adhesive_area(
     >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
     >>> psd, pressure = psds["Sb-S"], np.array([1e4, 1e5])
     >>> works = xr.DataArray([0.064, 0.051], {"medium": ["dry", "glycerol"]}, "medium")
-    >>> wet = xr.concat([tl.adhesion(pressure, psd, 2e6, w, nodes=60) for w in works], works.medium)
+    >>> media = [tl.contact.adhesion(pressure, psd, 2e6, w, nodes=60) for w in works]
+    >>> wet = xr.concat(media, works.medium)
     >>> bare = wet.isel(medium=0)[["contact_area_ratio_no_adhesion"]]
     >>> bare = bare.rename(contact_area_ratio_no_adhesion="contact_area_ratio")
     >>> figure = adhesive_area({"Sb-S": bare}, {"Sb-S": wet})
@@ -106,7 +107,7 @@ def effective_work(
     >>> from tribolab.studies import xu2026
     >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
     >>> found = {
-    ...     name: tl.adhesion(4e4, psd, 2e6, "64 mJ/m^2", nodes=60).expand_dims(medium=["dry"])
+    ...     name: tl.contact.adhesion(4e4, psd, 2e6, 0.064, nodes=60).expand_dims(medium=["dry"])
     ...     for name, psd in psds.items()
     ... }
     >>> tl.plot.figure_data(effective_work(found)).series.unique().tolist()

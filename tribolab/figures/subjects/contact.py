@@ -56,7 +56,7 @@ def contact_area(
     >>> pressure = xr.DataArray(np.geomspace(1e3, 1e6, 7), dims="pressure")
     >>> areas = {
     ...     name: xr.Dataset(
-    ...         {"contact_area_ratio": tl.contact_area_ratio(pressure, psd, "2 MPa")},
+    ...         {"contact_area_ratio": tl.contact.contact_area_ratio(pressure, psd, "2 MPa")},
     ...         {"pressure": pressure},
     ...     )
     ...     for name, psd in psds.items()
@@ -124,7 +124,8 @@ def gaps(distributions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> Fi
     >>> import tribolab as tl
     >>> from tribolab.studies import xu2026
     >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
-    >>> found = {name: tl.gap_distribution("0.04 MPa", psd, "2 MPa") for name, psd in psds.items()}
+    >>> gap = tl.contact.gap_distribution
+    >>> found = {name: gap("0.04 MPa", psd, "2 MPa") for name, psd in psds.items()}
     >>> tl.plot.figure_data(gaps(found)).series.unique().tolist()
     ['Sb-S', 'Sb-R']
     """
@@ -174,7 +175,7 @@ def line_pressure(
     >>> from tribolab.studies import xu2026
     >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
     >>> lines = {
-    ...     name: tl.rough_line_contact("310 N/m", xu2026.contact, psd, points=101)
+    ...     name: tl.contact.rough_line_contact("310 N/m", xu2026.contact, psd, points=101)
     ...     for name, psd in psds.items()
     ... }
     >>> tl.plot.figure_data(line_pressure(lines)).series.unique().tolist()

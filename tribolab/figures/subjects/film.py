@@ -44,7 +44,8 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
     ----------
     profiles
         ``x``, ``separation`` [m], ``contact_pressure``, ``fluid_pressure`` [Pa] over
-        (sliding_speed, point); or several results of `tribolab.film_profile`, each over (x).
+        (sliding_speed, point); or several results of `tribolab.lubrication.film_profile`, each
+        over (x).
 
     Examples
     --------
@@ -52,7 +53,7 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
     >>> from tribolab.studies import xu2026
     >>> psd = xu2026.psd("Sb-S", points=301)
     >>> films = [
-    ...     tl.film_profile(xu2026.contact, psd, "1.4 Pa s", "310 N/m", v, cells=100)
+    ...     tl.lubrication.film_profile(xu2026.contact, psd, "1.4 Pa s", "310 N/m", v, cells=100)
     ...     for v in ("10 um/s", "1 mm/s")
     ... ]
     >>> tl.plot.figure_data(film_profiles(films)).series.unique().tolist()
@@ -96,7 +97,8 @@ def lubrication_factors(
     ----------
     factors
         The five factors (separation) with the attribute ``rms_roughness_m``, by the surface's
-        name; or over (surface, relative_separation), from `tribolab.relative_flow_factors`.
+        name; or over (surface, relative_separation), from
+        `tribolab.lubrication.relative_flow_factors`.
     surfaces
         All surfaces of the study in their order, so that each has the same colour in all figures.
 
@@ -104,7 +106,7 @@ def lubrication_factors(
     --------
     >>> import tribolab as tl
     >>> from tribolab.studies import xu2026
-    >>> table = tl.flow_factors(xu2026.psd("Sb-S", points=301))
+    >>> table = tl.lubrication.flow_factors(xu2026.psd("Sb-S", points=301))
     >>> over = table.rms_roughness * np.geomspace(0.3, 3, 5)
     >>> figure = lubrication_factors({"Sb-S": table.dataset(over)})
     >>> tl.plot.figure_data(figure).pressure_flow_factor.dropna().round(2).tolist()

@@ -40,7 +40,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
     Parameters
     ----------
     fit
-        From `tribolab.fit_shear_stress_jointly`.
+        From `tribolab.fit.fit_shear_stress_jointly`.
     surface, surfaces
         Its name, if there is only one, and all names of the study in their order, for the colours.
 
@@ -53,7 +53,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
     >>> curves = tl.stribeck_curve(xu2026.contact, psd, 1.4, load, 8e5, speed, cells=60)
     >>> measured = curves[["friction_coefficient"]].isel(sliding_speed=slice(3, -3))
     >>> measured["friction_coefficient_sem"] = 0.02 * measured.friction_coefficient
-    >>> fit = tl.fit_shear_stress_jointly(
+    >>> fit = tl.fit.fit_shear_stress_jointly(
     ...     measured, xu2026.contact, psd, 1.4, measured["load"], curves=curves
     ... )
     >>> tl.plot.figure_data(joint_fit(fit)).series.unique().tolist()
@@ -135,7 +135,7 @@ def model_sensitivity(
     Parameters
     ----------
     uncertainty
-        From `tribolab.model_uncertainty`.
+        From `tribolab.fit.model_uncertainty`.
     surface, surfaces
         Its name, and all names of the study in their order, for the colour.
 
@@ -144,7 +144,8 @@ def model_sensitivity(
     >>> import tribolab as tl
     >>> from tribolab.studies import xu2026
     >>> given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0}
-    >>> spread = tl.model_uncertainty(xu2026.contact, None, speed=[1e-3, 1e-1], cells=100, **given)
+    >>> given |= {"speed": [1e-3, 1e-1], "cells": 100}
+    >>> spread = tl.fit.model_uncertainty(xu2026.contact, None, **given)
     >>> tl.plot.figure_data(model_sensitivity(spread)).panel.unique().tolist()
     ['band', 'bars']
     """

@@ -38,7 +38,7 @@ def master_curve(
     names
         Names of the liquids.
     collapse
-        From `tribolab.collapse_test`: its common curve and p-value.
+        From `tribolab.fit.collapse_test`: its common curve and p-value.
     model
         A computed curve with ``viscosity_Pa_s``; with `rms_roughness` [m] a second panel has the
         film ratio, and marks show where mixed lubrication begins and ends.

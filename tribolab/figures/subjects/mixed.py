@@ -54,7 +54,7 @@ def mixed_curve(
     curve
         The model over a wider range of speeds, with its parts.
     uncertainty
-        From `tribolab.model_uncertainty`: the band of the model.
+        From `tribolab.fit.model_uncertainty`: the band of the model.
     dry
         The measured curve of the dry contact at the same load.
     surface, surfaces

@@ -27,7 +27,7 @@ def uncertainty_budget(budget: UncertaintyBudget, at: int | None = None) -> Figu
     Parameters
     ----------
     budget
-        From `tribolab.uncertainty_budget`.
+        From `tribolab.metrology.uncertainty_budget`.
     at
         Number of the segment or speed, from 0; None for the typical one.
 
@@ -38,7 +38,7 @@ def uncertainty_budget(budget: UncertaintyBudget, at: int | None = None) -> Figu
     >>> values |= {"normal_force": 50.0, "direction": 1}
     >>> friction = xr.Dataset({name: ("segment", [value]) for name, value in values.items()})
     >>> stated = {"tilt": {"value": "0.5 deg", "as": "half-width"}}
-    >>> figure = uncertainty_budget(tl.uncertainty_budget(friction, stated))
+    >>> figure = uncertainty_budget(tl.metrology.uncertainty_budget(friction, stated))
     >>> tl.plot.figure_data(figure).part.tolist()
     ['combined', 'noise and known zero of the run', 'tilt']
     """

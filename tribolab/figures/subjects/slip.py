@@ -261,7 +261,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
     --------
     >>> import tribolab as tl
     >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
-    >>> curve = tl.stick_slip_curve([tl.stick_slip(run, tl.find_segments(run))])
+    >>> curve = tl.friction.stick_slip_curve([tl.stick_slip(run, tl.find_segments(run))])
     >>> tl.plot.figure_data(waveform_map({"dry": curve}))["drop"].round(2).tolist()
     [0.19]
     """

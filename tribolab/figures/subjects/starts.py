@@ -100,7 +100,7 @@ def cycles(friction: xr.Dataset | Mapping[str, xr.Dataset]) -> FigureSpec:
     Parameters
     ----------
     friction
-        From `tribolab.friction_per_cycle`, or several of them by their labels.
+        From `tribolab.friction.friction_per_cycle`, or several of them by their labels.
 
     Examples
     --------

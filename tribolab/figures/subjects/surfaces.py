@@ -34,7 +34,7 @@ def profiles(
         ``height`` (x or y, x; first ``scan`` if there are several) by the surface's name. Of a map
         the row in its middle is drawn; missing heights are gaps.
     form
-        Form to remove, as for `tribolab.remove_form`.
+        Form to remove, as for `tribolab.surface.remove_form`.
     surfaces
         All surfaces of the study in their order, so that each has the same colour in all figures.
 
@@ -95,7 +95,7 @@ def spectra(psds: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSp
     --------
     >>> import tribolab as tl
     >>> from tribolab import rig
-    >>> psd = tl.extrapolate(tl.psd_2d(rig.scans("Sb-R", 2, length=2e-3)))
+    >>> psd = tl.surface.extrapolate(tl.surface.psd_2d(rig.scans("Sb-R", 2, length=2e-3)))
     >>> tl.plot.figure_data(spectra({"Sb-R": psd})).series.unique().tolist()
     ['Sb-R']
     """
