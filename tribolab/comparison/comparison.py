@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -74,6 +75,21 @@ class Comparison:
     margin: str = ""
     counts: dict[str, int] = field(default_factory=dict)
     two_folders: bool = False
+
+    def _repr_html_(self) -> str:
+        """Return HTML of the verdicts and of the differences of each condition.
+
+        Examples
+        --------
+        >>> rows = pd.DataFrame({"quantity": ["mean friction"], "difference": [0.0123]})
+        >>> shown = Comparison(("old", "new"), rows, rows, counts={"equal": 7})._repr_html_()
+        >>> "<b>new minus old</b>: 7 equal" in shown, "0.0123" in shown
+        (True, True)
+        """
+        first, second = map(html.escape, self.names)
+        counts = html.escape(", ".join(f"{n} {verdict}" for verdict, n in self.counts.items()))
+        shown = self.quantities.to_html(index=False, float_format="{:.3g}".format)
+        return f"<p><b>{second} minus {first}</b>: {counts}</p>{shown}"
 
 
 def compare(

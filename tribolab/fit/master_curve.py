@@ -34,6 +34,17 @@ class Collapse(NamedTuple):
     abscissa: np.ndarray
     fitted: np.ndarray
 
+    def _repr_html_(self) -> str:
+        """Return HTML of the test and of each liquid's level and slope."""
+        liquids = "".join(
+            f"<tr><td>{number}</td><td>{level:.3g}</td><td>{slope:.3g}</td></tr>"
+            for number, (level, slope) in enumerate(zip(self.level, self.slope, strict=True), 1)
+        )
+        return (
+            f"<p><b>Common curve</b>: F = {self.statistic:.3g}, p = {self.p_value:.3g}</p><table>"
+            f"<tr><th>liquid</th><th>level of ln µ</th><th>slope</th></tr>{liquids}</table>"
+        )
+
 
 def collapse_test(
     curves: list[xr.Dataset],
@@ -81,7 +92,10 @@ def collapse_test(
     ...     return xr.Dataset({n: ("sliding_speed", v) for n, v in data.items()},
     ...                       {"sliding_speed": speed})
     >>> etas = [0.02, 0.2, 1.4]
-    >>> collapse_test([curve(eta) for eta in etas], etas).p_value > 0.9
+    >>> found = collapse_test([curve(eta) for eta in etas], etas)
+    >>> found._repr_html_().count("<tr>")  # a head and the liquids
+    4
+    >>> found.p_value > 0.9
     True
     """
     if len(curves) < 2 or len(curves) != len(viscosity):
