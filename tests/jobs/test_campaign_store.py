@@ -2,12 +2,15 @@
 
 import os
 import time
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tribolab.campaign.store import catalogue
 from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue, Store
+from tribolab.core.errors import OutputError
 from tribolab.core.provenance import sha256_of_file
 from tribolab.records.models.mode_record import EvidenceRow, ModeRecord
 from tribolab.records.part_records import (
@@ -81,7 +84,7 @@ PARTS = [
         ModelOutcome(
             name="m", curve="c", **SYSTEM, normal_force=31.0, status="done", parts=("curve",)
         ),
-        ModelRows(ROW, (), (ROW,), "T", (-0.1, 0.2)),
+        ModelRows(ROW, (), (ROW,), "T", (ROW,), (-0.1, 0.2)),
     ),
     FigureRecord("figures/a.svg", "", "A.", "µ from 0.1", "curve"),
     ModeRecord(
@@ -270,3 +273,13 @@ def test_a_file_that_cannot_be_read_has_no_checksum(tmp_path, read):
     store = Store(tmp_path)
     assert store.sources([(tmp_path / "gone.csv", "raw/gone.csv")]) == (("raw/gone.csv", "", 0),)
     store.close()
+
+
+def test_a_run_of_thousands_of_cycles_is_read_back_and_a_larger_one_is_refused(store, monkeypatch):
+    rows = tuple(ROW | {"segment": number, "note": "x" * 400} for number in range(40_000))
+    long = replace(RUN, facts=replace(RUN.facts, segments=rows))  # 20 MB
+    store.put("run", "ä", 0, "f", long)
+    assert store.get("run", "ä", RunRecord).record == long
+    monkeypatch.setattr(catalogue, "_MAX_RECORD", 1 << 24)
+    with pytest.raises(OutputError, match="run ä: its record of .* exceeds .* 16 MB"):
+        store.put("run", "ä", 0, "f", long)

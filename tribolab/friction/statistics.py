@@ -362,8 +362,13 @@ def error_of_series(records: np.ndarray) -> StandardError:
     Parameters
     ----------
     records
-        One evenly spaced record in each row, of at least three values (record, value).
+        One evenly spaced record in each row, of at least three values (record, value); of a longer
+        record than usual, means over equal intervals are used.
     """
+    count, most = records.shape[1], int(limits.BLOCKS.value)
+    if count > most:
+        edges = np.linspace(0, count, most + 1).astype(int)
+        records = np.add.reduceat(records, edges[:-1], axis=1) / np.diff(edges)
     found = levels_of(records)
     moved = np.abs(found.level - records.mean(axis=1))
     return with_freedom(np.hypot(found.sem, moved), found.u95 + moved)

@@ -23,13 +23,14 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from tribolab.campaign.store.data_files import link
+from tribolab.core.errors import OutputError
 from tribolab.core.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import PageTrace, Source
 from tribolab.records.runs.run_record import RunRecord
 
 CATALOGUE = "catalogue.sqlite"
 _FORMAT = "1"
-_LARGEST_RECORD = 1 << 24  # bytes: records of long runs have some 100 kB
+_MAX_RECORD = 1 << 28  # bytes: a run of 10 000 cycles has 20 MB
 _LATE = 2_000_000_000  # ns; a file changed within this time of reading may change again unnoticed
 _TABLES = """
 CREATE TABLE part (
@@ -197,8 +198,22 @@ class Store(Catalogue):
         record: object,
         trace: PageTrace | None = None,
     ) -> None:
-        """Store a part; replace one of the same name."""
-        text = zlib.compress(_adapter(type(record)).dump_json(record), 3)
+        """Store a part; replace one of the same name.
+
+        Raises
+        ------
+        OutputError
+            If the record is larger than one that is read back.
+        """
+        plain = _adapter(type(record)).dump_json(record)
+        if len(plain) > _MAX_RECORD:
+            raise OutputError(
+                f"{kind} {name}: its record of {len(plain) >> 20} MB exceeds the limit of "
+                f"{_MAX_RECORD >> 20} MB",
+                cure="state stroke_middle or min_duration in [segments] for fewer segments, or "
+                "split the file",
+            )
+        text = zlib.compress(plain, 3)
         coarse, fine = (trace.coarse, trace.fine) if trace else ("", "")
         outcome = getattr(record, "outcome", None)
         small = "" if outcome is None else _adapter(type(outcome)).dump_json(outcome).decode()
@@ -377,7 +392,7 @@ def _has_our_format(known: sqlite3.Connection) -> bool:
 
 def _inflated(packed: bytes) -> bytes:
     """Decompress a record; limited in size, so that a zip bomb gives invalid JSON."""
-    return zlib.decompressobj().decompress(packed, _LARGEST_RECORD)
+    return zlib.decompressobj().decompress(packed, _MAX_RECORD)
 
 
 def _entries(rows: Iterable[tuple[str, str, bytes]], record: type[Kept]) -> Iterator[Entry[Kept]]:

@@ -177,6 +177,7 @@ def _segment_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings)
             f"{_name(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
         )
     bare = segments.drop_dims("omitted") if "omitted" in segments.dims else segments
+    bare = bare.drop_vars([name for name in result.data_vars if name in bare])
     both = bare.merge(result, combine_attrs="drop")
     return judged(both).assign_attrs({**segments.attrs, **result.attrs})
 
