@@ -58,7 +58,7 @@ def layers() -> None:
     """Draw the half-width of a line contact on layers."""
     load = np.geomspace(200, 2500, 25)
     figure = Figure(figsize=(5, 3.2), layout="constrained")
-    axes = figure.add_subplot(xscale="log", yscale="log")
+    axes = figure.add_subplot()
     for thickness, (first, _, last, _) in LAYERS.items():
         layer = replace(CONTACT, thickness=thickness * 1e-3)
         axes.plot(load, 1e3 * hertz_half_width(load, layer), label=f"{thickness} mm")
