@@ -47,85 +47,12 @@ _PUBLIC = {
     "TribolabError": "tribolab.core.errors",
 }
 
-# Until the next release these names also work at the top level, with a warning.
-_FORMERLY_HERE = {
-    "draft_dialect": "reading",
-    "read_netcdf": "reading",
-    "write_netcdf": "reading",
-    "Decision": "friction",
-    "half_loops": "friction",
-    "friction_per_cycle": "friction",
-    "moving_mass": "friction",
-    "without_inertia": "friction",
-    "error_from_blocks": "friction",
-    "stick_slip_curve": "friction",
-    "traction_curves": "friction",
-    "remove_form": "surface",
-    "fill_dropouts": "surface",
-    "psd_1d": "surface",
-    "psd_2d": "surface",
-    "self_affine_psd": "surface",
-    "synthesise_map": "surface",
-    "extrapolate": "surface",
-    "spectral_roughness": "surface",
-    "rough_point_contact": "contact",
-    "rolling_friction": "contact",
-    "contact_area_ratio": "contact",
-    "mean_separation": "contact",
-    "separation_table": "contact",
-    "gap_distribution": "contact",
-    "rough_line_contact": "contact",
-    "adhesion": "contact",
-    "macroscopic_work_of_adhesion": "contact",
-    "adhesion_uncertainty": "contact",
-    "SurfaceEnergies": "contact",
-    "work_of_adhesion_spread": "contact",
-    "viscoelastic_friction": "rubber",
-    "two_body_friction": "rubber",
-    "RubberBody": "rubber",
-    "read_modulus": "rubber",
-    "PronySeries": "rubber",
-    "WilliamsLandelFerry": "rubber",
-    "flash_temperature": "rubber",
-    "modulus_at": "rubber",
-    "Interface": "lubrication",
-    "Solver": "lubrication",
-    "with_shear_stress": "lubrication",
-    "liquid_viscosity": "lubrication",
-    "film_profile": "lubrication",
-    "relative_flow_factors": "lubrication",
-    "flow_factors": "lubrication",
-    "collapse_test": "fit",
-    "FitSettings": "fit",
-    "Unknowns": "fit",
-    "fit_shear_stresses": "fit",
-    "fit_shear_stress_jointly": "fit",
-    "JointPriors": "fit",
-    "DryFriction": "fit",
-    "compare_shear_stress_models": "fit",
-    "model_inputs": "fit",
-    "model_uncertainty": "fit",
-    "sliding_mode": "regime",
-    "sliding_modes": "regime",
-    "Mode": "regime",
-    "uncertainty_budget": "metrology",
-    "dead_weight_gain": "metrology",
-    "RUN_CHECKS": "qc",
-    "objections": "qc",
-    "check_scans": "qc",
-    "check_scan_set": "qc",
-    "load_campaign": "campaign",
-    "load_review": "campaign",
-    "repeatability": "comparison",
-    "history": "comparison",
-    "measuring_plan": "comparison",
-    "pack": "archive",
-}
-
 _GROUPS = tuple(
     "reading friction surface contact rubber lubrication fit regime metrology qc plot campaign "
     "comparison archive rig studies".split()
 )
+
+_GROUPS_OF_FORMER_NAMES = [name for name in _GROUPS if name not in ("plot", "rig", "studies")]
 
 __all__ = [
     "__version__",
@@ -224,9 +151,12 @@ def __getattr__(name: str) -> Any:
         value = getattr(importlib.import_module(_PUBLIC[name]), name)
         globals()[name] = value
         return value
-    if group := _FORMERLY_HERE.get(name):
-        warnings.warn(f"tl.{name} is now tl.{group}.{name}", FutureWarning, stacklevel=2)
-        return getattr(importlib.import_module(f"tribolab.{group}"), name)
+    # until the next release, names of the groups that once were here
+    for group in () if name.startswith("_") else _GROUPS_OF_FORMER_NAMES:
+        home = importlib.import_module(f"tribolab.{group}")
+        if name in home.__all__:
+            warnings.warn(f"tl.{name} is now tl.{group}.{name}", FutureWarning, stacklevel=2)
+            return getattr(home, name)
     raise AttributeError(f"module 'tribolab' has no attribute '{name}'")
 
 

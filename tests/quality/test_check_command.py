@@ -260,7 +260,7 @@ def test_info_on_a_long_file_takes_an_excerpt_in_which_each_range_is_nearly_the_
     head = "Slider\nTime [s],Friction force [N],Normal force [N],Speed [mm/s]\n"
     file.write_text(head + "".join(lines))
     whole = file_info.file_lines(file)
-    monkeypatch.setattr(excerpt, "_LONG", 1 << 19)
+    monkeypatch.setattr(excerpt, "_MAX_WHOLE", 1 << 19)
     part = file_info.file_lines(file)
     assert "0.3%" not in part[2] and "estimated" in part[2]
     assert [line for line in part if line in whole] == [whole[0], *whole[2:]]

@@ -1,5 +1,7 @@
 """A pattern reads all the runs that it names; a name is a name even where it looks like one."""
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,21 @@ def test_a_pattern_that_nothing_matches_says_so(raw):
         tl.read(raw / "nothing_*.csv")
     with pytest.raises(ReadError, match=r"only folders"):
         tl.read(raw.parent / f"{raw.name[:-1]}?")
+
+
+def test_a_folder_is_separated_into_runs_and_scans(raw, tmp_path):
+    folder = tmp_path / "both"
+    shutil.copytree(raw, folder)
+    for number in (1, 2):
+        lines = [f"{0.5 * k},{k % 7 + number}" for k in range(300)]
+        text = "\n".join(["x [um],z [um]", *lines, ""])
+        (folder / f"rough_{number}.csv").write_text(text)
+    (folder / "notes.md").write_text("not a measurement")
+    for runs in (tl.read(folder, clock_shift=0.0), tl.read(folder / "*", clock_shift=0.0)):
+        assert len(runs) == 2 and all("friction_force" in run for run in runs)
+    assert tl.read_scans(folder).sizes["scan"] == tl.read_scans(f"{folder}/*").sizes["scan"] == 2
+    with pytest.raises(ReadError, match=r"none of the files is a run \(found: 2 x scan\)"):
+        tl.read(folder / "rough*")
 
 
 def test_a_file_whose_name_looks_like_a_pattern_is_that_file(tmp_path):

@@ -14,7 +14,6 @@ from tribolab.app.raw_folder import (
     as_pattern,
     files_in,
     is_results_folder,
-    may_hold_data,
     sorted_by_content,
 )
 from tribolab.campaign.settings.files import scan_files
@@ -23,6 +22,7 @@ from tribolab.campaign.settings.naming.files_named import pattern_of_names
 from tribolab.campaign.settings.naming.run_names import common_name, distinct, safe_name
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.core.errors import ConfigError, TribolabError
+from tribolab.reading.folder_content import may_hold_data
 from tribolab.reading.kinds import repeats_by_name
 from tribolab.reading.moduli import read_modulus_table
 from tribolab.reading.runs.logs import group_files

@@ -7,15 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.campaign.store.ledger import Ledger
-from tribolab.core.errors import TribolabError
-from tribolab.reading.kinds import kind_of
-from tribolab.reading.moduli import is_modulus_file
-from tribolab.reading.unknown_run import is_run_file
+from tribolab.reading.folder_content import content_of, may_hold_data
 
-_NO_DATA = (
-    *(".toml", ".py", ".ipynb", ".md", ".rst", ".pdf", ".doc", ".docx", ".ppt", ".pptx", ".html"),
-    *(".png", ".jpg", ".jpeg", ".tif", ".tiff", ".svg", ".gif", ".mp4", ".avi", ".zip", ".sqlite"),
-)
 _MAX_FILES = 5000  # most files in a folder; e.g. a whole disk is not a campaign
 
 
@@ -44,11 +37,6 @@ def files_in(folder: Path) -> list[Path]:
     return found
 
 
-def may_hold_data(path: Path) -> bool:
-    """Whether files with this suffix may contain measurements."""
-    return path.suffix.lower() not in _NO_DATA
-
-
 def is_results_folder(path: Path) -> bool:
     """Whether a folder contains results of `tribolab run`."""
     return (path / "report.json").is_file() or bool(Ledger.read(path).files)
@@ -72,7 +60,7 @@ def sorted_by_content(
         if len(group) > 1:
             kind = "run"
         else:
-            kind = _kind(group[0], instrument)
+            kind = content_of(group[0], instrument)
         if kind == "run":
             runs.append(list(group))
             kinds.runs.extend(group)
@@ -81,21 +69,6 @@ def sorted_by_content(
                 group[0]
             )
     return runs, kinds
-
-
-def _kind(path: Path, instrument: str | None) -> str:
-    """Return "run", "scan", "modulus" or "results"."""
-    try:
-        kind = kind_of(path, instrument)
-        if kind != "unknown":
-            return kind
-        if is_modulus_file(path):
-            return "modulus"
-        return "run" if is_run_file(path, by_name=False) else "scan"
-    except TribolabError:
-        if instrument is not None:
-            raise
-        return "run"  # the run will report what is wrong
 
 
 def as_pattern(files: Sequence[Path], others: Iterable[Path], raw: Path) -> list[str]:

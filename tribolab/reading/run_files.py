@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, overload
 
 import xarray as xr
 
 from tribolab.core.aliases import PathLike
-from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.find import Instrument
 from tribolab.reading.file_patterns import is_pattern, matching
+from tribolab.reading.folder_content import files_with
 from tribolab.reading.runs.logs import group_files
 from tribolab.reading.runs.read_run import Reading
 from tribolab.reading.unknown_run import read_run
@@ -56,7 +57,8 @@ def read(
     path
         A raw file: text (csv, txt, dat, asc, with any separator), Excel (xlsx, xls, ods), HDF5,
         MAT, TDMS, Parquet, Feather, JSON, NumPy (npz), or netCDF; a pattern such as
-        ``"raw/*.csv"`` (``**`` stands for folders, too); or a list: the two logs of a run, or the
+        ``"raw/*.csv"`` (``**`` stands for folders, too), or a folder, for the runs among its files
+        (`read_scans` reads the scans); or a list: the two logs of a run, or the
         files of consecutive cycles, in any order if they say when they start.
     instrument
         Name of a known instrument, path of a TOML description of your own, or a dialect such as
@@ -116,10 +118,8 @@ def read(
     """
     said: Reading = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
     said["moving_mass"] = moving_mass
-    if not isinstance(path, PathLike) or not is_pattern(path):
+    if not isinstance(path, PathLike) or not (is_pattern(path) or Path(path).is_dir()):
         return read_run(path, instrument, **said)
-    files = [file for file in matching(path) if file.is_file()]
-    if not files:
-        raise ReadError(f"{path}: only folders have such a name; write e.g. '{path}/*.csv'")
+    files = files_with("run", path) if instrument is None else matching(path)
     runs = group_files(files, instrument) if pair else [[file] for file in files]
     return [read_run(logs, instrument, **said) for logs in runs]

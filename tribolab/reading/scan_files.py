@@ -16,6 +16,8 @@ from tribolab.core.aliases import PathLike
 from tribolab.core.errors import ReadError
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument
+from tribolab.reading.file_patterns import is_pattern
+from tribolab.reading.folder_content import files_with
 from tribolab.reading.raw.source import read_unchanged
 from tribolab.reading.scans.extent import (
     RefusedScanError,
@@ -77,7 +79,8 @@ def read_scans(
     Parameters
     ----------
     paths
-        A file, a pattern with ``*``, or a list of either. A pattern's files come in order of name.
+        A file, a pattern with ``*`` or a folder, for the scans among its files in order of name,
+        or a list of files and patterns.
     instrument
         Dialect of a text file: its name, the path of a TOML file, or a dialect. Without it text is
         recognised by content; of other formats those of `formats.undescribed` are read.
@@ -119,6 +122,8 @@ def read_scans(
     >>> scan.attrs["instrument"], scan.attrs["pitch_m"], scan.sizes["x"]
     ('drafted from the file', 2.5e-07, 4)
     """
+    if instrument is None and isinstance(paths, str | Path) and _names_several(paths):
+        paths = files_with("scan", paths)
     files = files_of(paths)
     units = {"x_unit": x_unit, "height_unit": height_unit}
 
@@ -132,6 +137,10 @@ def read_scans(
     if not stack:
         return [stamp(scan) for _, scan in traces]
     return stacked([file for file, _ in traces], [scan for _, scan in traces])
+
+
+def _names_several(path: str | Path) -> bool:
+    return is_pattern(path) or Path(path).is_dir()
 
 
 def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, xr.Dataset]:
