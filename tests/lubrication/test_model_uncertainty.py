@@ -171,8 +171,10 @@ def test_all_that_is_held_fixed_is_named(spread):
     assert named == [*fixed, *rough]  # nothing else: all ranges were given
     # table of a layer: 3.5061 mm of 3.7168 mm, 56.42 kPa of 53.10 kPa; 3.1564 mm, 63.56 kPa
     text = spread.attrs["not_in_model"]
-    assert "10 mm would change the contact's width by -6% and its highest pressure by +6%" in text
-    assert "5 mm would change the contact's width by -15% and its highest pressure by +20%" in text
+    assert "10 mm would change the contact's width by −6 % and its highest pressure by +6 %" in text
+    assert (
+        "5 mm would change the contact's width by −15 % and its highest pressure by +20 %" in text
+    )
     assert "load: length and Poisson's ratio are taken as stated" in spread.attrs["not_varied"]
     bare = model_uncertainty(CONTACT, None, **GIVEN | {"speed": [1e-2]})
     text = bare.attrs["not_varied"]

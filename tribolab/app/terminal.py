@@ -277,13 +277,13 @@ def _roughness(outcome: Outcome) -> list[str]:
 
 
 def _left_out(outcome: Outcome) -> list[str]:
-    """Return a line on effects that the models leave out, with their sizes in the first model."""
+    """Return a line on effects that the models leave out; the page has their sizes."""
     for model in outcome.models:
         entry = outcome.store.get("model", model.name, ModelRecord)
         if entry and entry.record.rows and entry.record.rows.not_in_model:
             effects = entry.record.rows.not_in_model
-            named = [f"{e['effect']} ({e['size'] or 'size unknown'})" for e in effects]
-            return [f"not in the model: {'; '.join(named)}"]
+            names = ", ".join(str(effect["effect"]) for effect in effects)
+            return [f"not in the model: {names} (sizes in the report)"]
     return []
 
 

@@ -11,6 +11,7 @@ import xarray as xr
 
 from tribolab.contact.geometry import Contact, LineContact
 from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
+from tribolab.core.wording import percent
 from tribolab.fit import limits
 from tribolab.surface.moments import rms_roughness
 
@@ -96,20 +97,24 @@ def _ends(contact: LineContact, a: float) -> list[LeftOut]:
     tilt = LeftOut(
         "misalignment",
         f"a tilt of {2e3 * drop / contact.length:.2g} mrad changes the load per length at the "
-        f"ends by {change:.0%}",
+        f"ends by {percent(change)}",
         "the cylinder is parallel to the flat",
     )
     crown = LeftOut(
         "crown",
         f"a drop of {1e6 * drop:.2g} µm at the ends lowers the load per length there by some "
-        f"{change:.0%}",
+        f"{percent(change)}",
         "the cylinder is straight",
     )
     return [edge, tilt, crown]
 
 
 def _round(share: float) -> str:
-    return f"{float(f'{share:.1g}'):.0%}"
+    return percent(float(f"{share:.1g}"))
+
+
+def _signed(share: float) -> str:
+    return f"{'+' * (share > 0)}{percent(round(share, 2))}"
 
 
 def _effect_of_thickness(contact: Contact, load: float, a: float) -> str:
@@ -120,8 +125,8 @@ def _effect_of_thickness(contact: Contact, load: float, a: float) -> str:
         width = float(hertz_half_width(load, layer)) / a - 1
         pressure = float(hertz_max_pressure(load, layer)) / peak - 1
         parts.append(
-            f"{1e3 * thickness:g} mm would change the contact's width by {width:+.0%} and its "
-            f"highest pressure by {pressure:+.0%}"
+            f"{1e3 * thickness:g} mm would change the contact's width by {_signed(width)} and "
+            f"its highest pressure by {_signed(pressure)}"
         )
     return ", ".join(parts)
 
