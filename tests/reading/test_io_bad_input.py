@@ -79,8 +79,10 @@ def test_content_that_is_no_table_is_refused(tmp_path, content, told):
 
 
 def test_what_is_no_file_is_refused(tmp_path):
-    with pytest.raises(ReadError, match="not a file"):
+    with pytest.raises(ReadError, match="matches nothing in"):  # an empty folder
         tl.read(tmp_path)
+    with pytest.raises(ReadError, match="not a file"):
+        tl.read([tmp_path])
     with pytest.raises(ReadError, match="no such file"):
         tl.read(tmp_path / "gone.csv")
     with pytest.raises(ReadError, match="no file is given"):
