@@ -1,4 +1,4 @@
-"""File names with wildcards, which name all files that are called so."""
+"""File names with wildcards."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tribolab.core.errors import ReadError
 
 
 def is_pattern(path: str | Path) -> bool:
-    """Say whether a path has wildcards and is not itself the name of a file.
+    """Return whether a path has wildcards and is not itself the name of a file.
 
     Examples
     --------
@@ -21,12 +21,12 @@ def is_pattern(path: str | Path) -> bool:
 
 
 def matching(pattern: str | Path) -> list[Path]:
-    """Return what is called as a pattern says, in order of name.
+    """Return the paths that match a pattern, in order of name.
 
     Raises
     ------
     ReadError
-        If nothing is.
+        If there is no match.
     """
     path = Path(pattern)
     folder = next(parent for parent in path.parents if parent.is_dir())  # whatever its name is
@@ -38,7 +38,7 @@ def matching(pattern: str | Path) -> list[Path]:
 
 
 def why_missing(path: Path) -> str:
-    """Say how much of a path is not there: the file, its folder, or all a pattern could name."""
+    """Return text on the missing part of a path: the file, its folder, or all matches."""
     if any(sign in str(path.parent) for sign in "*?") and not path.parent.is_dir():
         return "the pattern matches nothing"
     if not path.parent.is_dir():

@@ -1,4 +1,4 @@
-"""What a raw file holds: a run, a scan, or the results of a roughness tester."""
+"""Contents of a raw file: a run, a scan, or the results of a roughness tester."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ _LAST_NUMBER = re.compile(r"[ _-]*\d+$")
 
 
 def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
-    """Tell from a file's content, or from its instrument, what it holds.
+    """Return what a file contains, from its content or its instrument.
 
     Parameters
     ----------
     path
         The file.
     instrument
-        Its dialect, if it is known.
+        Its dialect, if known.
 
     Returns
     -------
     str
-        "run", "scan", "results", or "unknown": text or a format that no dialect describes, which
-        may be a profile that SurfaceTopography reads.
+        "run", "scan", "results", or "unknown": text or a format without a dialect, perhaps a
+        profile that SurfaceTopography reads.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
 
 
 def _holds_map(path: Path) -> bool:
-    """Whether a file of arrays by name holds a map, or profiles side by side."""
+    """Whether a file of named arrays contains a map, or profiles side by side."""
     try:
         check_regular(path)
         with path.open("rb") as file:
@@ -77,7 +77,7 @@ def _holds_map(path: Path) -> bool:
 
 
 def repeats_by_name(paths: Iterable[Path]) -> list[list[Path]]:
-    """Put scans together whose names differ in their last number only, in one folder.
+    """Group scans of one folder whose names differ only in their last number.
 
     Examples
     --------

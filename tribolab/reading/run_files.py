@@ -50,57 +50,57 @@ def read(
     zero: str | None = None,
     moving_mass: str | float | None = None,
 ) -> xr.Dataset | list[xr.Dataset]:
-    r"""Read one run from its raw file or files, or all the runs that a pattern names.
+    r"""Read one run from its raw file or files, or all runs of a folder or pattern.
 
     Parameters
     ----------
     path
         A raw file: text (csv, txt, dat, asc, with any separator), Excel (xlsx, xls, ods), HDF5,
         MAT, TDMS, Parquet, Feather, JSON, NumPy (npz), or netCDF; a pattern such as
-        ``"raw/*.csv"`` (``**`` stands for folders, too), or a folder, for the runs among its files
+        ``"raw/*.csv"`` (``**`` includes subfolders), or a folder, for the runs among its files
         (`read_scans` reads the scans); or a list: the two logs of a run, or the
-        files of consecutive cycles, in any order if they say when they start.
+        files of consecutive cycles, in any order if they state when they start.
     instrument
         Name of a known instrument, path of a TOML description of your own, or a dialect such as
-        ``tl.reading.draft_dialect(path).dialect``. Without it the instrument is recognised by the
-        file's content; text that none is known to write is read all the same where its header says
-        what every column is, and ``instrument`` is then "drafted from the file".
+        ``tl.reading.draft_dialect(path).dialect``. By default the instrument is recognised from the
+        file's content. A file of an unknown instrument is read if its header names every column;
+        the attribute ``instrument`` is then "drafted from the file".
     pair
-        Also read the companion log, if the instrument writes one and it lies beside the file.
+        Also read the companion log in the same folder, if the instrument writes one.
     clock_shift
-        What has to be added to the companion's clock to get this log's clock [s]; estimated from
-        the signals when not given.
+        Time to add to the companion's clock to obtain this log's clock [s]; by default estimated
+        from the signals.
     zero
-        Where the zero of the friction signal is read: ``"first 200 samples"``, ``"first 2 s"``,
-        ``"1.5 s to 3 s"``, or ``"file blank.csv"``, a run without contact beside the file.
+        Part of the record that gives the zero of the friction signal: ``"first 200 samples"``,
+        ``"first 2 s"``, ``"1.5 s to 3 s"``, or ``"file blank.csv"``, a run without contact in the
+        same folder.
     moving_mass
-        Mass between the contact and the force sensor ("1.2 kg", or a number in kg): its inertia is
-        taken out of the friction force, and stands in ``inertial_force``. Where it is not known,
-        `without_inertia` may find it.
+        Mass between the contact and the force sensor ("1.2 kg", or a number in kg). Its inertia is
+        subtracted from the friction force and is the variable ``inertial_force``. An unknown mass
+        can be estimated by `without_inertia`.
 
     Returns
     -------
     xarray.Dataset or list of xarray.Dataset
-        Dim ``time`` [s] from the first sample, strictly increasing; the quantities that the
-        instrument records, in SI; what stands outside the table as attributes, with the unit in
-        the name. Raw time is ``time + time_origin_s``. Of a pattern a list, with each run once, in
-        order of name: a log and its companion are one run.
+        Dim ``time`` [s] from the first sample, strictly increasing; the recorded quantities, in
+        SI; settings outside the table as attributes, with the unit in the name. Raw time is
+        ``time + time_origin_s``. For a folder or pattern a list with each run once, in order of
+        name: a log and its companion are one run.
 
     Raises
     ------
     ReadError
-        If a file cannot be read, or no file is called as the pattern says; the message says what,
-        where and how to mend it. Of a file of an unknown instrument it says what would have to be
-        guessed, with what else it may be.
+        If a file cannot be read, or no file matches the pattern; the message states what is
+        wrong, where, and how to fix it. For a file of an unknown instrument it states what is
+        uncertain, with the alternatives.
     ConfigError
         If there is no such instrument.
 
     Notes
     -----
-    Time has to increase strictly; what is done where it does not is stated in
-    `clocks.clock`. Single values that are missing are NaN, and so are numbers beyond
-    1e100, which ``numbers_beyond_range`` counts. An optional column without a
-    value is left out and named in ``columns_not_used``.
+    Time must increase strictly; `clocks.clock` describes how other clocks are treated. Missing
+    values are NaN, as are numbers beyond 1e100, which ``numbers_beyond_range`` counts. An optional
+    column without values is omitted and named in ``columns_not_used``.
 
     Examples
     --------

@@ -1,7 +1,4 @@
-"""Read scans of any instrument: text that no dialect knows is described from its own header.
-
-The face of `scans.read_scan` for whoever does not know beforehand what wrote a file.
-"""
+"""Read scans of any instrument; a text file of an unknown one is described by its own header."""
 
 from __future__ import annotations
 
@@ -74,7 +71,7 @@ def read_scans(
     height_unit: str | None = None,
     stack: bool = True,
 ) -> xr.Dataset | list[xr.Dataset]:
-    r"""Read scans of one surface; text of an unknown instrument by what its header says.
+    r"""Read scans of one surface; text of an unknown instrument according to its header.
 
     Parameters
     ----------
@@ -82,31 +79,31 @@ def read_scans(
         A file, a pattern with ``*`` or a folder, for the scans among its files in order of name,
         or a list of files and patterns.
     instrument
-        Dialect of a text file: its name, the path of a TOML file, or a dialect. Without it text is
-        recognised by content; of other formats those of `formats.undescribed` are read.
-        Text that no dialect knows is read where its header says what the columns are, or how far
-        its heights lie apart; ``instrument`` is then "drafted from the file".
+        Dialect of a text file: its name, the path of a TOML file, or a dialect. By default text is
+        recognised by its content, and the other formats of `formats.undescribed` are read. Text of
+        an unknown instrument is read if its header names the columns, or states the pitch; the
+        attribute ``instrument`` is then "drafted from the file".
     x_unit, height_unit
         Units of positions and heights, for files that state none and have no dialect.
     stack
-        False: return a list with a dataset for each file, or for each trace in one, which may
+        False: return a list with a dataset for each file, or for each trace in a file; they may
         differ in pitch and length.
 
     Returns
     -------
     xarray.Dataset or list of xarray.Dataset
         Profiles: ``height`` [m] (scan, x), ``x`` [m] from 0, also for one file, and the files'
-        names as ``file`` (scan); of several traces in a file each is a scan. One map:
+        names as ``file`` (scan); each of several traces in a file is a scan. One map:
         ``height`` [m] (y, x), several: (scan, y, x). Missing heights are NaN.
         Attributes: ``pitch_m``, ``length_m`` (from the first point to the last), ``tip_radius_m``,
-        ``lambda_c_m`` and the instrument's own results (``instrument_Ra_m``, ...) where the file
-        has them. Attributes that differ between stacked scans are joined by ``"; "``.
+        ``lambda_c_m`` and the instrument's own results (``instrument_Ra_m``, ...) if the file
+        states them. Attributes that differ between stacked scans are joined by ``"; "``.
 
     Raises
     ------
     ReadError
-        If there is no such file, it cannot be understood, holds results only, or the scans differ
-        in pitch or length. Of a file that says too little itself, with the guesses.
+        If there is no such file, it cannot be read, contains results only, or the scans differ in
+        pitch or length. For a file with too little information the message lists the guesses.
 
     Notes
     -----
@@ -144,7 +141,7 @@ def _names_several(path: str | Path) -> bool:
 
 
 def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, xr.Dataset]:
-    """Read all scans of one file, each by a name of its own.
+    """Read all scans of one file, each under its own name.
 
     Parameters
     ----------
@@ -156,8 +153,8 @@ def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, 
     Returns
     -------
     dict
-        Of a file with one scan that by the file's path; of several traces each by a path that the
-        trace would have: "line.txt, trace 2".
+        The scan of a file with one scan under the file's path; each of several traces under the
+        path with the trace's number: "line.txt, trace 2".
 
     Raises
     ------
@@ -171,7 +168,7 @@ def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, 
 
 
 def file_of(trace: Path) -> Path:
-    """Return the file that a trace of `read_traces` stands in.
+    """Return the file that contains a trace of `read_traces`.
 
     >>> file_of(Path("line.txt, trace 2")).name, file_of(Path("line.txt")).name
     ('line.txt', 'line.txt')

@@ -1,1 +1,1 @@
-"""What each column of an unknown table holds, and in which unit."""
+"""Quantity and unit of each column of an unknown table."""

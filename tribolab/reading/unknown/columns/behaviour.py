@@ -1,4 +1,4 @@
-"""What unnamed columns of numbers hold, told by how the numbers behave; all of it is a guess."""
+"""Quantities of unnamed columns, guessed from the behaviour of their numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _ROWS = 20_000  # rows looked at
 _MIN_CORRELATION = 0.9999  # correlation of one signal in two units
-_COMPARED = 1000  # columns held against one another: their pairs grow with the square
+_COMPARED = 1000  # columns that are compared: the number of pairs is quadratic
 _EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
 _SMOOTH = 1.12
 _MAX_SCAN = 200.0  # mm, the largest traverse of a profilometer
@@ -24,7 +24,7 @@ _HIGHEST = 5.0  # mm, the range of a stylus gauge
 def by_behaviour(
     columns: list[DraftColumn], numbers: np.ndarray, units: tuple[str, str] = ("", "")
 ) -> tuple[Kind, list[DraftColumn], list[str]]:
-    """Tell a map, a profile, a run or none of them by the numbers of its columns.
+    """Recognise a map, a profile or a run by the numbers of the columns.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def _is_even(x: np.ndarray) -> bool:
 
 
 def _is_clock(x: np.ndarray) -> bool:
-    """Whether numbers rise by even steps, start anew now and then, and never go astray."""
+    """Whether numbers rise by even steps, apart from restarts."""
     if len(x) < 2 * _EVERY or not np.isfinite(x).all():
         return False
     steps = np.diff(x)

@@ -17,7 +17,7 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 
 
 class Cells(NamedTuple):
-    """What the cells of a table hold.
+    """Contents of the cells of a table.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ def read_cells(layout: Layout) -> Cells:
 
 
 def _measured(numbers: np.ndarray) -> np.ndarray:
-    """Return numbers without those that stand for no value, as the reader leaves them out."""
+    """Return numbers without no-data values, which the reader omits."""
     numbers[np.abs(numbers) > LARGEST] = np.nan
     for values in numbers.T:
         take_marks([values])

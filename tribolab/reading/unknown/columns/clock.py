@@ -1,4 +1,4 @@
-"""What a drafted dialect has to say of the clock: it starts anew, and what single rows become."""
+"""Settings of the clock in a drafted dialect: restarts, and single rows out of order."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ OnRepeat = Literal["", "drop", "interpolate"]
 
 
 def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
-    """Sum a column of time that holds intervals by its name and its numbers; whether it does.
+    """Sum a time column that contains intervals by name and numbers; return whether it does.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
 def find_clock(
     layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
 ) -> tuple[OnRepeat, bool, list[DraftColumn]]:
-    """Find out what has to be said for time to increase: of single rows, and of new starts.
+    """Find the settings with which time increases: for single rows, and for restarts.
 
     Rows are left out only where nothing is lost with them: the row before says the same, or they
     are empty.
@@ -75,7 +75,7 @@ def find_clock(
         lossless = _loses_nothing(np.delete(numbers, column.place - 1, axis=1), numbers, bad)
         on_repeat = "drop" if lossless else "interpolate"
         column = _with_repeats(column, time, bad, lossless=lossless)
-    if wraps:  # no guess: it falls by exactly what such a counter holds
+    if wraps:  # no guess: it falls by exactly the range of such a counter
         note = "; ".join(f"its counter wraps every {p:.9g} s" for p in dict.fromkeys(wraps))
         column = column._replace(note=f"{column.note}; {note}" if column.note else note)
     return on_repeat, restart, _replaced(columns, column)
@@ -103,7 +103,7 @@ def _loses_nothing(others: np.ndarray, numbers: np.ndarray, bad: np.ndarray) -> 
 def _with_repeats(
     column: DraftColumn, time: np.ndarray, bad: np.ndarray, *, lossless: bool
 ) -> DraftColumn:
-    """Say what becomes of rows whose time does not increase; a guess unless one time fits."""
+    """Describe the treatment of rows whose time does not increase; a guess unless one time fits."""
     rows = f"{int(bad.sum())} rows whose time is not later than before"
     if lossless:
         return column._replace(note=f"{rows} are left out: they add nothing")

@@ -1,4 +1,4 @@
-"""Whether a coefficient of friction that a file holds agrees with its forces, or may be one."""
+"""Agreement of a recorded friction coefficient with the recorded forces."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tribolab.units.quantities import unit_conversion
 
 _RATIO = ("friction_coefficient", "friction_force", "normal_force")
 _APART = 1.5  # times: filters and zeros that the instrument took off make less
-_MIN_LOADED_ROWS = 20  # rows under load that tell
+_MIN_LOADED_ROWS = 20  # rows under load that are needed
 _LOADED = 0.5  # of the largest load
 _OVER_N = re.compile(r"\w{1,3}\s*/\s*N")  # a symbol and its unit, or divided by the normal force
 
 
 def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
-    """Say so where the forces' ratio is not the coefficient beside them, or can be none at all.
+    """Note if the recorded coefficient differs from the ratio of the forces, or cannot be one.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from tribolab.reading.unknown.columns.cells import Cells
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-# Day before month or after it: which one, the dates may tell; where they do not it is a guess.
+# Day before or after month: a guess unless the dates decide.
 _EUROPE, _AMERICA = "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S"
 _FORMS = (
     *(ISO, ISO_ZONE),

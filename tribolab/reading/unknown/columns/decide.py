@@ -34,7 +34,7 @@ SIGNALS = {
     "film_thickness",
 }
 _TORQUE = "a torque: with the radius at which it acts it is a force"
-_NOTHING = -20.0  # log odds of a column that holds no quantity: names propose, others rule out
+_NOTHING = -20.0  # log odds of a column without a quantity: names propose, other evidence rules out
 _NOT_PROPOSED = -1000.0
 
 
@@ -61,7 +61,7 @@ def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
 
 
 class _Assignment(NamedTuple):
-    """Which column holds which quantity, by its place in `names`, and what speaks for it."""
+    """Quantity of each column, by its position in `names`, with the evidence."""
 
     facts: Facts
     evidence: Sequence[Evidence]
@@ -84,7 +84,7 @@ class _Assignment(NamedTuple):
         return option
 
     def other_force_is_taken(self, place: int, name: str) -> bool:
-        """Whether a column may hold either force, and another surely holds the other one."""
+        """Whether a column may be either force while another is certainly one of them."""
         other = BOTH_FORCES[name == BOTH_FORCES[0]]
         if not self.facts.is_either_force(place) or other not in self.names:
             return False
@@ -205,7 +205,7 @@ def _unused(decided: _Assignment, place: int) -> DraftColumn:
 
 
 def _hint(facts: Facts, place: int) -> str:
-    """Return what a unit says of a column whose name is not known; "" if it says nothing."""
+    """Return the quantity suggested by the unit of a column with an unknown name, else ""."""
     unit = facts.bare[place][1]
     if unit is None:
         return ""

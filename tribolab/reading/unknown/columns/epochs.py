@@ -1,4 +1,4 @@
-"""Clocks that count from a moment of their own, told by the size of their numbers."""
+"""Clocks with an epoch of their own, recognised by the size of their numbers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Counted(NamedTuple):
 
 
 def counted_from(values: np.ndarray, unit: str | None, *, dated: bool = False) -> Counted | None:
-    """Tell the moment that a column of time counts from; None if its numbers do not.
+    """Return the epoch of a column of time; None if its numbers do not show it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What speaks for a column to hold a quantity: its name, its numbers, the text, the other columns.
+"""Evidence for the quantity of a column: its name, its numbers, the text, the other columns.
 
 Each rule is a generator of `Evidence`. Weights are logarithms of odds and add up; their order does
 not matter.
@@ -42,7 +42,7 @@ _ROLE: dict[Role, float] = {
     "extreme": math.log(0.4),
 }
 _CONSTANT = math.log(0.9)  # a load that never moves is the one that was set
-_PREFERRED = 0.03  # log odds by size of a name that may stand for two quantities
+_PREFERRED = 0.03  # log odds by size, for a name that may mean two quantities
 _CROSSTALK = 5.0  # times: the force along the motion is so much larger than one across it
 _ACROSS = {"fy"}  # names of a force across the motion
 _RADIAL = {"fr", "frad"}  # friction; but next to a torque the force that presses on the shaft
@@ -55,11 +55,11 @@ _SMALLEST_TURN = 2 * math.pi * 0.5e-3  # m, on the smallest track (physics.toml)
 _MOVING = 0.2  # of the fastest: slower, friction is turning
 _MIN_TURNS = 2  # one might be chance
 _AGREES = 0.9  # mean product of the signs: 95 % of the rows agree
-_DIFFERENT = 0.01  # relative difference of two columns that hold different numbers
+_DIFFERENT = 0.01  # relative difference of two columns that are not copies
 
 
 class Evidence(NamedTuple):
-    """How far something speaks for a column (from 0) to hold a quantity; "" for any quantity.
+    """Score of one piece of evidence for the quantity of a column (from 0); "" for any quantity.
 
     A negative weight speaks against it. With `sure` nobody is asked, with `doubt` a person is.
     """
@@ -81,7 +81,7 @@ class Facts(NamedTuple):
     columns, bare
         The columns, and their names without units.
     options
-        For each the quantities that its name may stand for, the likeliest first.
+        For each column the possible quantities of its name, the most likely first.
     numbers
         Their numbers (rows, columns) as written.
     kind
@@ -100,7 +100,7 @@ class Facts(NamedTuple):
         return [o for o in options if o.score >= options[0].score - NEAR]
 
     def places(self, name: str) -> list[int]:
-        """Return the columns whose name first of all stands for a quantity."""
+        """Return the columns whose most likely quantity by name is this one."""
         return [p for p, o in enumerate(self.options) if o and o[0].quantity == name]
 
     def is_named(self, place: int, name: str = "") -> bool:
@@ -115,7 +115,7 @@ class Facts(NamedTuple):
         return any(self.is_named(place, name) for place in range(len(self.options)))
 
     def is_either_force(self, place: int) -> bool:
-        """Whether a name does not say which of both forces a column holds."""
+        """Whether a name leaves open which of both forces a column contains."""
         near = {option.quantity for option in self.candidates(place)}
         return not self.is_named(place) and set(BOTH_FORCES) <= near
 
@@ -124,7 +124,7 @@ Rule = Callable[[Facts], Iterator[Evidence]]
 
 
 def name_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Propose what a name stands for; a symbol or a whole term weighs more than a part of one."""
+    """Propose quantities for a name; a symbol or a whole term weighs more than part of a term."""
     for place, options in enumerate(facts.options):
         for rank, option in enumerate(facts.candidates(place) if options else ()):
             weight = math.log(option.score) - 1e-3 * rank
@@ -149,7 +149,7 @@ def repeated_name_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def number_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Weigh sizes and steps where a name may stand for two quantities."""
+    """Weigh sizes and steps if a name may mean two quantities."""
     has_units = any(unit is not None for _, unit, _ in facts.bare)
     for place, options in enumerate(facts.options):
         values = facts.numbers[:, place]
@@ -310,7 +310,7 @@ def stage_axis_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def rotation_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a length next to a rotation speed that does not grow as the rotation says."""
+    """Rule out a length that does not increase with the rotation speed in another column."""
     turning, ways = facts.places("rotation_speed"), facts.places("position")
     turning = [place for place in turning if facts.bare[place][1] is not None]
     ways = [place for place in ways if not is_axis(facts.bare[place][0])]
@@ -361,7 +361,7 @@ def _explained(way: np.ndarray, turns: np.ndarray) -> float:
 
 
 def typical_size(facts: Facts, place: int) -> float:
-    """Return the median magnitude of a column in SI units of what its name stands for."""
+    """Return the median magnitude of a column, in SI units of its quantity by name."""
     option, unit = facts.options[place][0], facts.bare[place][1]
     unit = None if unit is not None and is_count(unit) else unit
     known = quantity(option.quantity)
@@ -372,7 +372,7 @@ def typical_size(facts: Facts, place: int) -> float:
 
 
 def is_contested(facts: Facts, place: int, best: int, name: str) -> bool:
-    """Whether a column is as surely named for a quantity as the best, but holds other numbers."""
+    """Whether a column's name suits a quantity as well as the best one, but its numbers differ."""
     if name not in _DECIDING or role_of(facts.bare[best][0]) == "measured":
         return False
     if role_of(facts.bare[place][0]) or not facts.is_named(place, name):

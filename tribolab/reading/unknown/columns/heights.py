@@ -88,7 +88,7 @@ def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftC
     stated
         Whether the text before the table states the unit of heights.
     unit
-        What they may be in, if nothing says it.
+        Possible units, if none is stated.
     """
     name, own, say = bare_name(column)
     if say and own is not None and column.file_unit is None:

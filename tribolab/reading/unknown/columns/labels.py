@@ -1,4 +1,4 @@
-"""Names and units of the columns of an unknown table, as its header says them."""
+"""Names and units of the columns of an unknown table, from its header."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import unit_in_words
 
 _MAX_LINE = 300  # characters of a line that are looked at
-_PURE = ("1", "-", ".")  # what stands for the unit of a pure number
+_PURE = ("1", "-", ".")  # signs for the unit of a pure number
 
 
 def labelled(layout: Layout) -> list[DraftColumn]:
-    """Columns with their names and units as the header says them."""
+    """Columns with their names and units from the header."""
     heading = layout.heading
     cells = list(heading.cells if heading else ())[: layout.width]
     if heading is None and layout.width == 1:
@@ -92,7 +92,7 @@ _SAID_UNIT = r"(?P<unit>[^\W\d_%][^\s,;:()\[\]]{0,20}|%|°C)(?=$|[\s,;.)\]])"
 
 
 def _stated_units(layout: Layout, cells: Sequence[str]) -> dict[int, str]:
-    """Return units of columns (from 1) that the text above says: "F in gf, t in ms"."""
+    """Return units of columns (from 1) stated in the text above: "F in gf, t in ms"."""
     bare = [place for place, cell in enumerate(cells, 1) if cell and split_name(cell)[1] is None]
     if len(bare) > _MAX_NAMES or layout.heading is None or layout.heading.units is not None:
         return {}
@@ -135,7 +135,7 @@ def _named_above(layout: Layout) -> str:
 
 
 def bare_name(column: DraftColumn) -> Bare:
-    """Name without its unit, the unit, and whether the dialect has to say it."""
+    """Name without its unit, the unit, and whether the dialect must state it."""
     name = split_name(column.label)[0] if column.name is None else column.name
     if column.unit is not None:
         return name, column.unit, True

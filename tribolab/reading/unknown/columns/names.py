@@ -1,4 +1,4 @@
-"""What the columns of a table hold by their names: a run, a profile, or neither."""
+"""Type of a table by the names of its columns: a run, a profile, or neither."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from tribolab.reading.unknown.model import DraftColumn, Kind
 _OF_RUN = {"time", "friction_force", "friction_coefficient", "normal_force", "sliding_velocity"}
 _RISES = 0.9  # share of the steps from row to row; a clock may start again
 _FIRST_WORD = re.compile(r"[\W_]+")
-_BY_UNIT = 0.6  # score of a name that says nothing, if its unit does
+_BY_UNIT = 0.6  # score of an unknown name with a known unit
 
 
 def has_meaning(columns: list[DraftColumn]) -> bool:
-    """Whether the header says more than 'Channel 1, Channel 2'."""
+    """Whether the header has more information than 'Channel 1, Channel 2'."""
     bare = [bare_name(column)[:2] for column in columns if column.label]
     return any(unit is not None or matches(name, unit) for name, unit in bare)
 
@@ -76,7 +76,7 @@ def decide_by_name(
 
 
 def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:
-    """Take rising columns in a unit of time for time if no name says which column it is.
+    """Use a rising column in a unit of time as time if no name identifies it.
 
     The names of several clocks in one table begin with t: "t_force (s)", "t_motor (s)".
     """

@@ -1,4 +1,4 @@
-"""Columns whose own numbers prove what they hold, and in which units."""
+"""Columns whose numbers prove their quantities and units."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Pro
 
 
 def add_proven_units(columns: Sequence[DraftColumn], proofs: dict[int, Proof]) -> list[DraftColumn]:
-    """Return columns with the units that are proven, where the file says none."""
+    """Return columns with proven units if the file states none."""
     return [
         column._replace(unit=proof.unit)
         if (proof := proofs.get(place)) is not None and bare_name(column)[1] is None
@@ -147,12 +147,12 @@ def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Ca
 def restrict_to_proofs(
     matched: Sequence[list[Match]], proofs: dict[int, Proof], numbers: np.ndarray
 ) -> list[list[Match]]:
-    """Return what names may stand for, given what is proven: it leaves others no choice.
+    """Return the possible quantities of names, given those that are proven.
 
     Parameters
     ----------
     matched
-        For each column the quantities that its name may stand for.
+        For each column the possible quantities of its name.
     proofs
         From `proven`.
     numbers
@@ -161,7 +161,7 @@ def restrict_to_proofs(
     taken: dict[str, int] = {}
     for place in sorted(proofs):
         taken.setdefault(proofs[place].quantity, place)
-    # how fast it slides is known: a way tells no more
+    # the sliding speed is known: a distance adds nothing
     settled = {*taken, "position"} if "sliding_velocity" in taken else set(taken)
 
     def options_of(place: int, options: list[Match]) -> list[Match]:
@@ -170,7 +170,7 @@ def restrict_to_proofs(
             kept = [option for option in options if option.quantity not in settled]
             return kept if proof is None or proof.quantity != "distance" else []
         if place == taken[proof.quantity] or not _same(numbers, place, taken[proof.quantity]):
-            # a load in g is read in gf, as its name alone would say
+            # a load in g is read in gf, as by its name alone
             unit = next((o.unit for o in options if o.quantity == proof.quantity), None)
             return [Match(proof.quantity, 1.0, unit)]
         return []

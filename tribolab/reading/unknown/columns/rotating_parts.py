@@ -23,13 +23,13 @@ _TURNS = re.compile(
     r"^(?:number|no|nr|n)?(?:of)?(?:revolution|turn|rev|rotation|umdrehung)(?:s|en)?$"
 )
 _UNITS_OF_TURNS = {"", "-", "1", "rev", "revs", "turn", "turns", "U", "revolutions"}
-_WHOLE = 0.5  # share of whole numbers from which a count goes on by whole turns
+_WHOLE = 0.5  # share of whole numbers above which a column counts whole turns
 
 
 def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that holds a torque by its name, else by its unit; with its unit.
+    """Return the only torque column, by its name or else by its unit; with its unit.
 
-    What a person called so goes before both.
+    A torque named by a person takes precedence.
     """
     if (said := _said(columns, "torque")) is not None:
         return said
@@ -40,7 +40,7 @@ def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that is named as a torque, but holds divisions, counts or volts."""
+    """Return the only column named as a torque in divisions, counts or volts."""
     if torque_of(columns) is not None:
         return None
     fitting = []
@@ -54,7 +54,7 @@ def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that holds an angle of rotation, with its unit."""
+    """Return the only column with an angle of rotation, and its unit."""
     named = _said(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
     return named or _only_column(columns, _TURNS_IN_ANGLES.search, "rad")
 
@@ -81,7 +81,7 @@ def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn
 
 
 def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that holds the radius of a track, with its unit."""
+    """Return the only column with the radius of a track, and its unit."""
     return _only_column(columns, is_track_radius, "m")
 
 

@@ -58,7 +58,7 @@ def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[
 def _moving(
     columns: Sequence[DraftColumn], numbers: np.ndarray, signals: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return how fast it goes, in any unit, and signals beside it; nothing if it is not said."""
+    """Return the speed, in any unit, and the other signals; nothing without a speed."""
     held = {c.quantity: c for c in columns if c.used}
     speed = next((held[name] for name in _SPEEDS if name in held), None)
     if speed is not None:

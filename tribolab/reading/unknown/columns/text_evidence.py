@@ -1,4 +1,4 @@
-"""What the text of a file says of its columns: the axes of a sensor, and the stated load."""
+"""Evidence on columns in the text of a file: axes of a sensor, and the stated load."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of 
 _WORDS = rf"(?:[^\W\d][^;|,；，]|[{UNPARTED}])[^;|,；，]{{1,60}}"  # two of such letters make a word
 _KNOWN_SHARE = 0.3  # of an explanation that a known word makes up
 _LETTERS_OF_NAME = 4  # of a name that a text mentions
-_STATED = 8.0  # log odds of what the text says outright
+_STATED = 8.0  # log odds of an explicit statement in the text
 _BY_LOAD = 3.0
 _LOADED = 0.4  # of the largest reading
 _MAX_READINGS = 0.98  # the few above are faults
@@ -79,7 +79,7 @@ def _is_axis(facts: Facts, place: int) -> bool:
 
 
 def _explanation(name: str, lines: Sequence[str]) -> str:
-    """Return what a line says a name is: "Fx = vertical", or "vertical force (Fx)"."""
+    """Return the explanation of a name in a line: "Fx = vertical", or "vertical force (Fx)"."""
     name = re.escape(name.strip())
     after = re.compile(
         rf"(?<![^\W_]){name}(?![^\W_])\s{{0,3}}[=:：＝–—-]\s{{0,3}}(?P<about>{_WORDS})"
@@ -156,7 +156,7 @@ def stated_load_evidence(layout: Layout) -> Rule:
 
 
 def _undecided_cells(facts: Facts) -> list[int]:
-    """Return the columns of which the stated load may tell which force they hold."""
+    """Return the columns whose force the stated load may identify."""
     places = range(len(facts.columns))
     either = [place for place in places if facts.is_either_force(place)]
     held = {o[0].quantity for p, o in enumerate(facts.options) if o and p not in either}

@@ -33,14 +33,14 @@ def filled_in(
     kind: Kind,
     several: bool,
 ) -> DraftColumn:
-    """Return a column as one that holds a quantity.
+    """Return a column with its quantity.
 
     Parameters
     ----------
     column, bare
         The column, and its name without the unit.
     option
-        The quantity that its name stands for.
+        The quantity meant by its name.
     values
         Its numbers as written (row).
     kind
@@ -109,7 +109,7 @@ def _doubts_of_name(
 def _unit_reading(
     column: DraftColumn, bare: Bare, option: Match, values: np.ndarray, kind: Kind
 ) -> _Reading:
-    """Return in which unit a column is read, or what has to be said of it."""
+    """Return the unit of a column, or what is missing for it."""
     name, unit, say_unit = bare
     si_unit, label = quantity(option.quantity).unit, shown(column.label)
     timed = option.quantity == "time"

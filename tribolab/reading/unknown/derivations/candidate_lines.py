@@ -25,7 +25,7 @@ def candidate_lines(layout: Layout, follows: Follows, lack: str) -> str:
     layout
         From `tribolab.reading.unknown.layout.text_layout.find_layout`.
     follows
-        What was found out about the file: what it rests on is not quoted.
+        Findings on the file; lines that they depend on are not quoted.
     lack
         The quantity that is missing: "track_radius", "normal_force" or "sliding_velocity".
     """

@@ -1,4 +1,4 @@
-"""What follows of columns and stated values where no column holds it."""
+"""Quantities without a column that follow from columns and stated values."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HELD = 1.1  # times what was set, or as much less: a measured load that is held
 
 
 def what_follows(layout: Layout, understood: Understood) -> Follows:
-    """Find out what follows of a run where no column holds it.
+    """Find the quantities of a run that follow from others.
 
     Notes
     -----
@@ -63,7 +63,7 @@ def _derived(found: _Same) -> Follows:
 
 
 def held_quantities(understood: Understood) -> set[str]:
-    """Return what columns hold, those whose unit has still to be filled in included."""
+    """Return the quantities of columns, including those whose unit is still missing."""
     return {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
 
 
@@ -104,7 +104,7 @@ def _add_load(result: Follows, layout: Layout, understood: Understood, known: Kn
 
 
 def _set_load(load: Derivation[Source] | None) -> Source | str:
-    """Return the load that was set, stated or said, where the load follows from nothing else."""
+    """Return the load that was set or stated, if no other information gives it."""
     for leaf in load.leaves if load is not None and load.rule is not None else ():
         measured = isinstance(leaf.source, DraftColumn) and leaf.source.quantity == "normal_force"
         if leaf.quantity in ("set_normal_force", "axial_force") and not measured:

@@ -105,7 +105,7 @@ def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Say what has to be guessed of the load on inclined contacts; nothing if it is known."""
+    """Return the guesses on the load of inclined contacts; nothing if it is known."""
     inclined = find_inclined(layout)
     held = {column.quantity for column in columns if column.used}
     if inclined is None or "friction_coefficient" in held:

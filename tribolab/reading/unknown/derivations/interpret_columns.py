@@ -1,4 +1,4 @@
-"""What the columns of an unknown table hold: by their names and units, else by their numbers."""
+"""Quantities of the columns of an unknown table: from names and units, else from numbers."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ _REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller
 
 
 class _Spacing(NamedTuple):
-    """What the text above a table says of the distance of a profile's points."""
+    """Pitch of a profile as stated above a table."""
 
     pitch: Amount | None
     length: Amount | None
@@ -105,7 +105,7 @@ def _stated_spacing(layout: Layout) -> _Spacing:
 
 
 def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretation:
-    """Tell profiles, runs and other tables apart: by what is stated, by names, or by numbers."""
+    """Distinguish profiles, runs and other tables by statements, names, or numbers."""
     numbers, unit = cells.numbers, find_height_unit(layout)
     along = find_unit_along(layout)
     columns = in_stated_unit(labelled(layout), unit, along)
@@ -151,7 +151,7 @@ def _profile_of(
 def _combined_forces(
     layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
 ) -> tuple[list[DraftColumn], list[str]]:
-    """Combine what several columns say of the forces and speeds of a run; list its doubts."""
+    """Combine the forces and speeds of several columns; list the doubts."""
     columns = force_or_ratio(columns)
     columns = exclude_surface_speeds(columns, find_surface_speeds(layout, columns, numbers))
     columns = confirm_lever_arm_force(layout, columns)
@@ -313,5 +313,5 @@ def _likely_unit(numbers: np.ndarray, pitch: Amount | None) -> str:
 
 
 def first_cells_of(layout: Layout, number: int) -> list[list[str]]:
-    """Cells of the first rows as they stand in the file."""
+    """Cells of the first rows, as written in the file."""
     return [split_row(line, layout.delimiter) for line in layout.rows(number)]

@@ -138,7 +138,7 @@ def _add_friction(known: _Facts) -> Amount | None:
 
 
 def _add_columns(known: _Facts) -> None:
-    """Add the quantities that columns hold; a position tells a speed only if rows have times."""
+    """Add the quantities of columns; a position gives a speed only if rows have times."""
     timed = "time" in known.names or known.understood.rate_pattern or known.understood.rate
     held = known.names if timed else known.names - {"position"}
     for column in known.columns:
@@ -169,7 +169,7 @@ def _add_gains(known: _Facts) -> Amount | None:
 
 
 def _pair_of(known: _Facts) -> Pair | None:
-    """Return the speeds of two surfaces, where no column holds how fast they slide."""
+    """Return the speeds of two surfaces if no column contains the sliding speed."""
     pair = find_surface_speeds(known.layout, known.columns, known.understood.numbers)
     used = {column.place for column in known.columns if column.used}
     taken = pair is not None and {column.place for column in pair.columns} & used
@@ -228,7 +228,7 @@ def _has_track(known: _Facts) -> bool:
 
 
 def _crank(layout: Layout) -> Amount | None:
-    """Return what the text says of a crank that drives strokes, to be kept with the run."""
+    """Return the text on a crank that drives strokes, to be stored with the run."""
     drive, sine = key_pattern("drive"), part_pattern("sine")
     said = [t for key, t in text_settings(layout) if drive.search(normalise_label(key))]
     crank = next((text for text in said if sine.search(normalise_label(text))), None)
@@ -283,7 +283,7 @@ def _add_speeds(known: _Facts, pair: Pair | None) -> None:
 
 
 def _add_load(known: _Facts) -> None:
-    """Add what presses: cells that add up, an axial force, and what was said, set or stated."""
+    """Add the load: sums of cells, an axial force, or a load that was set or stated."""
     weights = [c for c in known.columns if not c.used and not c.quantity and _is_weight(c)]
     if len(weights) == 1:
         known.add("mass", "mass", weights[0]._replace(unit=bare_name(weights[0])[1]))

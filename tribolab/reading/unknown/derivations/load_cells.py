@@ -1,4 +1,4 @@
-"""Loads of several cells that a person said to add up."""
+"""Loads of several cells that add up according to a person."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tribolab.reading.unknown.model import DraftColumn, Reason
 
 
 def loads_that_add(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Return the columns of loads that add up, as they stand in a formula."""
+    """Return the columns of loads that add up, as written in a formula."""
     return [
         c._replace(unit=unit if say else None)
         for c in columns

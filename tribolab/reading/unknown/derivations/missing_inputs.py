@@ -22,7 +22,7 @@ from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
 
 
 class Uncalibrated(NamedTuple):
-    """A column of friction or torque of which it is not known what one number is worth."""
+    """A column of friction or torque in an unknown unit."""
 
     column: DraftColumn
     torque: bool = False
@@ -30,7 +30,7 @@ class Uncalibrated(NamedTuple):
     goals: tuple[str, ...] = ("friction",)
 
     def __str__(self) -> str:
-        """Say what is missing, and how it is stated."""
+        """Return what is missing, and how to state it."""
         label = shown(self.column.label, 30)
         if self.torque:
             return (
@@ -44,7 +44,7 @@ class Uncalibrated(NamedTuple):
 
 
 def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Uncalibrated]:
-    """Return what a friction coefficient over speed needs, and neither columns nor text hold."""
+    """Return what is missing in columns and text for a friction coefficient over speed."""
     columns = understood.columns
     known = {name: follows.given[name] for name in follows.given}
     at_arm = "arm_force" in known
@@ -76,7 +76,7 @@ def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Unc
 
 
 def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Return the columns of which nothing is known, but those of what turns."""
+    """Return the unknown columns, except those of rotation."""
     turning = (
         torque_of(columns),
         angle_of(columns),

@@ -1,4 +1,4 @@
-"""What follows of a run where no column holds it: formulas, what they rest on, and the speed."""
+"""Quantities of a run that follow from others: formulas, their inputs, and the speed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WIDE_RING = "friction acts at the mean of the inner and the outer radius"
 
 
 class DraftedFormula(NamedTuple):
-    """A quantity that follows: its name, the formula, what it rests on, where its zero is read.
+    """A quantity that follows: its name, formula, inputs, and the location of its zero.
 
     With `way` it is so on the way out alone: nothing presses on the way back.
     """
@@ -32,7 +32,7 @@ class DraftedFormula(NamedTuple):
 
 
 class SpeedBy(NamedTuple):
-    """How the sliding speed follows: what [speed] says, by keys, and what of it is guessed."""
+    """Rule for the sliding speed: the keys of [speed], and those that are guessed."""
 
     source: str
     settings: tuple[tuple[str, str], ...] = ()

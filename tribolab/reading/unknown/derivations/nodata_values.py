@@ -1,4 +1,4 @@
-"""Numbers in columns of heights that the header states to stand for no height."""
+"""No-data numbers in columns of heights, as stated in the header."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tribolab.reading.unknown.model import DraftColumn
 def take_stated_missing(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> list[str]:
-    """Put NaN where a number stands for no height, and return what is written there.
+    """Replace no-data heights by NaN, and return their text.
 
     Parameters
     ----------

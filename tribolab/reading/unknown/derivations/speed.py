@@ -1,4 +1,4 @@
-"""How a dialect says how fast it slides, by the rule from which it follows."""
+"""The sliding speed in a dialect, by the rule that gives it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _ANOTHER_SPEED = re.compile(
 
 
 def add_speed(result: Follows, layout: Layout, understood: Understood, known: KnownRun) -> Follows:
-    """Return what follows, with how fast it slides, where no column says so.
+    """Return the quantities that follow, with the sliding speed if no column contains it.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def _rows_are_means(understood: Understood, strokes: Strokes) -> bool:
 
 
 def _said_of_drive(layout: Layout, strokes: Strokes) -> list[str]:
-    """Return, normalised, what the text says of the drive."""
+    """Return the normalised text on the drive."""
     said = []
     for key, text in text_settings(layout):
         name, words = normalise_label(key), normalise_label(text)

@@ -80,7 +80,7 @@ def _speed_of(column: DraftColumn) -> str:
 
 
 def exclude_surface_speeds(columns: Sequence[DraftColumn], pair: Pair | None) -> list[DraftColumn]:
-    """Return columns of which neither surface's speed is that of the sliding."""
+    """Return columns of surface speeds, which are not the sliding speed."""
     places = {column.place for column in pair.columns} if pair is not None else set()
     return [
         c._replace(quantity=None, used=False, guessed=(), options=(), fill_in="", note=_SURFACE)
@@ -147,7 +147,7 @@ def speed_symbol(column: DraftColumn, name: str) -> tuple[DraftColumn, str]:
 
 
 def shaft_of_torque(layout: Layout, pair: Pair) -> int | None:
-    """Return on which body's shaft (0, 1) the torque is measured, if a line says so."""
+    """Return the body (0, 1) whose shaft has the torque sensor, if a line states it."""
     torque = key_pattern("torque")
     clauses = [
         normalise_label(clause)

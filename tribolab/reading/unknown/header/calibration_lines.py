@@ -1,4 +1,4 @@
-"""Lines above a table that say what a volt or a count of a signal is, or where its zero is.
+"""Lines above a table with the calibration or the zero of a signal in volts or counts.
 
 They are quoted when a person is asked for it.
 """
@@ -22,7 +22,7 @@ _UNIT_OF_NAME = re.compile(r"[\[(](\w{1,12}/\w{1,12})[\])]")
 
 
 def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
-    """Quote the lines that say what a volt or a count is, or the zero in them; "" if none does.
+    """Quote the lines with a calibration of volts or counts, or its zero; "" without any.
 
     With `bare`, heights are meant, which may have no header.
     """
@@ -32,7 +32,7 @@ def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
 
 
 def states_calibration(line: str) -> bool:
-    """Whether a line says what a volt or a count is worth.
+    """Whether a line states the calibration of a volt or a count.
 
     >>> stated = ("Encoder: 500 counts/mm", "1 N = 4213 counts", "Gain [N/mV]: 2.3", "2 mV/V")
     >>> [states_calibration(line) for line in (*stated, "Speed: 2 mm/s", "Supply: 5 V")]

@@ -90,7 +90,7 @@ def _states_one(text: str) -> bool:
 
 
 def _unapplied(line: str) -> str:
-    """Say what a line states that the signals may not hold yet; "" if nothing.
+    """Return a stated factor that the signals may not include yet; "" if there is none.
 
     >>> _unapplied("Multiply friction force by 1.25")
     "signals are read as they stand, and not as the file says: 'Multiply friction force by 1.25'"
@@ -141,7 +141,7 @@ def _counts_contacts(line: str, number: Number) -> bool:
 
 
 def _multiplies(line: str, number: Number) -> bool:
-    """Whether a line says to multiply or to divide by a number."""
+    """Whether a line states a number to multiply or divide by."""
     before = line[: number.start].rstrip().rpartition(" ")
     if before[2] in ("x", "X", "×", "*"):  # "Friction force x 1.25", not "512 x 512"
         return says("signal", before[0]) and not any(map(str.isdigit, before[0]))

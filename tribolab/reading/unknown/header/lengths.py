@@ -15,7 +15,7 @@ _MAX_LINE = 200  # characters of a line that are looked at
 
 
 def slides_on_rim(layout: Layout) -> bool:
-    """Whether a file says that the track is the outside of what turns, as in block on ring."""
+    """Whether a file states that the track is the outside of the rotating part (block on ring)."""
     texts = (layout.file.path.stem, *layout.text_above())
     return any(says("slides_on_rim", text[:_MAX_LINE]) for text in texts)
 
@@ -78,7 +78,7 @@ def find_arm(values: Sequence[Amount]) -> Amount | None:
 
 
 def is_at_arm(column: DraftColumn) -> bool:
-    """Whether a column's name says that its force is one on an arm, which makes a torque.
+    """Whether a column's name is a force on an arm, which gives a torque.
 
     Parameters
     ----------

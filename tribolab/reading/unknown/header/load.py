@@ -53,13 +53,13 @@ def _are_one(one: Amount, other: Amount) -> bool:
 
 
 def lifted_on_return(layout: Layout) -> bool:
-    """Whether the text says that nothing presses on the way back: a sled that is lifted."""
+    """Whether the text states that a sled is lifted on the return stroke."""
     lines = (line[:_MAX_LINE] for line in layout.text_above())
     return any(_says_lifted(line) and says("on_return", line) for line in lines)
 
 
 def _says_lifted(line: str) -> bool:
-    """Whether a line says so, and no word before it denies it.
+    """Whether a line states so without a negation.
 
     >>> _says_lifted("Sled lifted, cell not tared"), _says_lifted("The sled is not lifted")
     (True, False)
@@ -70,5 +70,5 @@ def _says_lifted(line: str) -> bool:
 
 
 def stated_number(value: Amount) -> float:
-    """Return the number that an amount's text states, in its unit; NaN if it is none."""
+    """Return the number of an amount, in its unit; NaN if the text is no amount."""
     return value.scale * value.number

@@ -13,7 +13,7 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 
 _MAX_LINE = 200  # characters of a line that are looked at
 _TIP_RADII = (1e-9, 1e-3)  # m, the smallest and the largest
-# units of heights under whatever name they stand
+# units of heights with any name
 _USUAL = frozenset({"nm", "um", "µm", "\u03bcm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
 _HEIGHTS_IN = re.compile(
     rf"(?<![^\W\d_]){alternatives('heights_in')}\s+{alternatives('in')}\s+"

@@ -47,7 +47,7 @@ _RATE_UNITS = {"": "Hz", "k": "kHz", "m": "MHz"}  # nobody takes a sample in a t
 
 
 class Sampling(NamedTuple):
-    """What the text before the table says of the distance of samples, and what of it is guessed.
+    """Sampling as stated above the table, and the parts of it that are guessed.
 
     `pattern` finds the number; `unit` is one of frequency, or of time if it is an interval, and
     may be taken for what a rate is usually in (`has_unit` False).
@@ -76,7 +76,7 @@ def find_sampling(layout: Layout) -> Sampling | None:
 def find_pace(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> Sampling | None:
-    """Return the speed at which a position goes on that holds the time: a crosshead's.
+    """Return the speed of a position that gives the time, such as a crosshead's.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def sample_rate_unit(text: str) -> str:
 
 
 def _fewer_rows(layout: Layout) -> str:
-    """Return the line that says that several samples are averaged or left out; "" if none does."""
+    """Return the line on averaged or omitted samples; "" if there is none."""
     for line in layout.text_above():
         if _EVERY.search(line[:_MAX_LINE]):
             return shown(line.strip(), 40)
@@ -140,7 +140,7 @@ def _fewer_rows(layout: Layout) -> str:
 
 
 def _in_amounts(layout: Layout) -> Sampling | None:
-    """Return what stands in a sentence or among other numbers of a line."""
+    """Return a value within a sentence or among other numbers of a line."""
     concepts = "sampling_interval", "sampling_rate"
     for value in numeric_settings(layout).of(*concepts, source="preamble"):
         if value.is_in("Hz") or value.is_in("s"):
@@ -170,7 +170,7 @@ def _of_line(line: str, decimal: str) -> Sampling | None:
     name = normalise_label(bare)
     digits = rf"({_GROUPS}|[-+\d.,]+(?:[eE][-+]?\d+)?)"
     pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*{digits}"
-    if not said["before"].strip():  # a number alone is found by what stands behind it
+    if not said["before"].strip():  # a number alone is found by the text after it
         pattern = rf"^\s*{digits}\s*{escaped(unit)}"
     thousands = ""
     if decimal == "." and re.fullmatch(r"[1-9]\d{0,2}(?:,\d{3})+", said["number"]):

@@ -42,7 +42,7 @@ def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
 
 
 def text_settings(layout: Layout, *, bare: bool = False) -> tuple[tuple[str, str], ...]:
-    """Return what the text above the table says in words: "Drive: crank" as ("Drive", "crank").
+    """Return settings in words above the table: "Drive: crank" as ("Drive", "crank").
 
     Parameters
     ----------

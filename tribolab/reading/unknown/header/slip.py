@@ -1,4 +1,4 @@
-"""A slide-roll ratio or a rotation that the text above a table states, and of which speed."""
+"""A slide-roll ratio or a rotation stated above a table, and its speed."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
 
 
 class Strokes(NamedTuple):
-    """Length and frequency of strokes: what [speed] says of them, where they stand, a guess."""
+    """Length and frequency of strokes: their entry in [speed], their location, and a guess."""
 
     settings: tuple[tuple[str, str], ...]
     values: tuple[Amount, ...] = ()
@@ -34,7 +34,7 @@ class Strokes(NamedTuple):
 def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | None:
     """Return length and frequency of strokes, of the text above the table and of columns.
 
-    A column takes precedence over the text: it says when the setting changes.
+    A column takes precedence over the text: it shows when the setting changes.
     """
     lengths, frequencies = _of_columns(understood)
     stroke, frequency, guess = _stated(values)
@@ -61,14 +61,14 @@ def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | 
 
 
 def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Strokes | None:
-    """Return the strokes that a person said, with what the text states of what was not said.
+    """Return the strokes that a person stated, completed by the text.
 
     Parameters
     ----------
     values
         From `numeric_settings`.
     said
-        Length and frequency with their units; "" for what was not said.
+        Length and frequency with their units; "" if not stated.
     """
     stated = _stated(values)[:2]
     settings, kept = [], []
@@ -82,7 +82,7 @@ def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Stro
 
 
 def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
-    """Return the length and frequency of strokes that stand above the table."""
+    """Return the length and frequency of strokes stated above the table."""
     stroke, frequency, guess = _stated(values)
     if stroke is None or frequency is None:
         return None
@@ -91,14 +91,14 @@ def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
 
 
 def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | None:
-    """Return strokes of a length that the text states, of which a crank makes one each turn.
+    """Return strokes of a stated length, one pair per turn of a crank.
 
     Parameters
     ----------
     values
         From `numeric_settings`.
     often
-        The column that says how fast the crank turns.
+        The column with the crank's rotation speed.
     """
     stroke, _, guess = _stated(values)
     if stroke is None:
@@ -108,7 +108,7 @@ def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | 
 
 
 def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
-    """Return what stands above the table of strokes, to be held against a recorded position."""
+    """Return the stated strokes, for comparison with a recorded position."""
     strokes = find_strokes_above(values)
     if strokes is None or strokes.guess:
         return ()
@@ -161,7 +161,7 @@ def _says_several(value: Amount) -> bool:
 
 
 def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftColumn]]:
-    """Return the columns that hold lengths of strokes, and those of how often they come."""
+    """Return the columns of stroke lengths, and those of stroke frequencies."""
     lengths, frequencies = [], []
     for column in understood.columns:
         name, unit = split_name(column.label)
@@ -179,7 +179,7 @@ def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftCo
 
 
 def _change(understood: Understood, columns: Sequence[DraftColumn]) -> bool:
-    """Whether the one column of a setting holds several."""
+    """Whether the only column of a setting has several values."""
     if len(columns) != 1:
         return False
     values = understood.numbers[:, columns[0].place - 1]

@@ -37,12 +37,12 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
     unit
         "N" of a force, "N m" of a torque.
     said
-        What a person said of it: "taken off", or "in it".
+        Statement of a person: "taken off", or "in it".
 
     Returns
     -------
     Amount or None
-        None, too, if nothing says whether it was taken off: see `zero_in_doubt`.
+        Also None if it is unknown whether it was subtracted: see `zero_in_doubt`.
     """
     zero = _stated(values, unit)
     in_it = said == "in it" or (not said and _is_still_in(layout, zero))
@@ -55,7 +55,7 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
 def zero_in_doubt(
     layout: Layout, values: Sequence[Amount], unit: str, said: str = ""
 ) -> Amount | None:
-    """Return a stated zero of which nothing says whether it was taken off the signal."""
+    """Return a stated zero if it is unknown whether it was subtracted from the signal."""
     zero = _stated(values, unit)
     if zero is None or said or _is_still_in(layout, zero):
         return None
@@ -64,7 +64,7 @@ def zero_in_doubt(
 
 
 def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Say of stated zeros of the load that the numbers of its one column are read without them."""
+    """Note that the numbers of the load are read without its stated zeros."""
     forces = any(c.used and c.quantity == "normal_force" for c in columns)
     volts = any(converts(c.file_unit or split_name(c.label)[1] or "", "V") for c in columns)
     zeros = [
@@ -84,17 +84,17 @@ def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[
 
 
 def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Say of a record that is stated to begin without contact that its zero is not taken off."""
+    """Note that the zero of a record that begins without contact is not subtracted."""
     held = {c.quantity for c in columns if c.used}
     if "normal_force" in held or "friction_coefficient" in held:
-        return []  # the load tells where nothing presses
+        return []  # the load shows where there is no contact
     lines = (line.strip()[:_MAX_LINE] for line in layout.text_above())
     said = [line for line in lines if _says_unloaded_start(line)]
     return [f"the friction is read as it stands, although '{shown(line, 60)}'" for line in said[:1]]
 
 
 def _says_unloaded_start(line: str) -> bool:
-    """Whether a line says that nothing presses at first, in words or as a load of zero.
+    """Whether a line states that the record begins without load.
 
     >>> lines = ("first 3 s without load", "step 0: load 0 N", "0;0 rpm;0 N", "no load cell")
     >>> [_says_unloaded_start(line) for line in lines]
@@ -111,7 +111,7 @@ def _says_unloaded_start(line: str) -> bool:
 
 
 def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the column that holds the friction force, of which a zero may be taken off."""
+    """Return the friction force column, from which a zero may be subtracted."""
     held = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
     return held[0] if len(held) == 1 else None
 

@@ -51,7 +51,7 @@ def _is_footer(line: str, first: str, grammar: Grammar) -> bool:
 
 
 def main_blocks(blocks: list[Block]) -> tuple[list[Block], int]:
-    """Return the blocks under the same header that hold most numbers; how many others there are.
+    """Return the blocks under the same header with the most numbers; and the number of others.
 
     Blocks without a header count only if none of their width has one.
     """
@@ -71,6 +71,6 @@ def _key(block: Block) -> tuple[tuple[str, ...] | None, int]:
     heading = block.heading
     if heading is None:
         return None, block.width
-    # the order of columns may change from step to step, where names tell which is which
+    # the order of columns may change from step to step if they have names
     cells = tuple(sorted(heading.cells)) if heading.aligned else heading.cells
     return cells, block.width

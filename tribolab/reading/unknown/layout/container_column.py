@@ -33,7 +33,7 @@ class HeldColumn(NamedTuple):
 
 
 def better_name(name: str, meaning: str) -> str:
-    """Return what a file says that a column means, where its name alone says nothing; else "".
+    """Return the description of a column if its name alone has no meaning; else "".
 
     >>> better_name("F_nrm", "normal force, by the leaf spring"), better_name("Fx", "lateral force")
     ('normal force', '')
@@ -46,7 +46,7 @@ def better_name(name: str, meaning: str) -> str:
 
 
 def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
-    """Leave out tables that lie in groups beside another with columns of the same names.
+    """Omit tables in groups next to another one with columns of the same names.
 
     Parameters
     ----------

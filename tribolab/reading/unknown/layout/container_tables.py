@@ -1,4 +1,4 @@
-"""Unknown files that hold columns by name: Excel, Parquet, Feather, HDF5, MAT, TDMS and npz.
+"""Unknown files with named columns: Excel, Parquet, Feather, HDF5, MAT, TDMS and npz.
 
 Their columns are laid out as a table below a line of names, with their numbers as they are.
 """
@@ -45,13 +45,13 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     Raises
     ------
     ReadError
-        If it holds no columns of numbers of one length, or is damaged.
+        If it has no columns of numbers of equal length, or is damaged.
     """
     try:
         held, raw = _workbook(file) if file.container == "excel" else _container(file)
     except (ReadError, ImportError):
         raise
-    except Exception as error:  # each of these libraries has its own ways to say "damaged"
+    except Exception as error:  # each of these libraries reports damage in its own way
         raise ReadError(f"this {file.container} file cannot be read", where=file.path) from error
     placed, settings, clocks, guesses = _whole(raw)
     text = text_of(([clocks.setting] if clocks else []) + settings)
@@ -169,7 +169,7 @@ def _laid_out(file: File, columns: Sequence[HeldColumn], text: str, rows: int) -
 
 
 def _cell(column: HeldColumn) -> str:
-    """Return a column's label, or what it means, with its unit."""
+    """Return a column's label or meaning, with its unit."""
     name = " ".join((column.shown or column.label).split())
     return f"{name} [{column.unit}]" if column.unit else name
 

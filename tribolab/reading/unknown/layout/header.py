@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 _ABOVE = 8  # lines above the first row that are looked at
 _MAX_MARK = 80  # characters of it
-_TELLING = 200  # cells that tell whether a row is one of units
+_TELLING = 200  # cells that decide whether a row contains units
 _WORD = re.compile(r"\S+")
 # A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
 # look for it, a long line without brackets would be gone through once for each of its words
 _BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
-# "Units,um" and "Points,1500" say something, and name no column
+# "Units,um" and "Points,1500" are settings, and name no column
 _SAYS = re.compile(
     rf"[^\W\d]\W*[,;]\W*(?:{alternatives('unit_alone')}|[-+]?\d[\d.,]*)\W*$"
     rf"|^\W*{alternatives('unit_key')}\s+[^\W\d]{{1,3}}\W*$"
@@ -44,7 +44,7 @@ _SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.sy
 
 
 class Heading(NamedTuple):
-    """A header: index of its line, that of the row of units, and what they say.
+    """A header: index of its line and of the row of units, with their contents.
 
     `aligned` is False where the delimiter does not part the names as it parts the numbers; they
     are then given by position.
@@ -94,7 +94,7 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
     for index, (cells, aligned) in fitting.items():
         over = [above for above in fitting if above < index]
         if _are_units(cells) and over:
-            # between names and units may stand numbers of channels, or a row of delimiters
+            # numbers of channels or a row of delimiters may separate names and units
             best = max(over, key=lambda above: (_known(fitting[above][0]), above))
             names, named = fitting[best]
             return Heading(best, index, names, cells, aligned and named)
@@ -136,8 +136,8 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
     if not filled or len(words) < 0.7 * len(filled) or _MARK.fullmatch(line[:_MAX_MARK]):
         return False
     if re.match(r"\s*(#|%|//|;|\*|!)", line) and re.search(r"[:=]", line):
-        return False  # a comment that says something: "# rate: 10 Hz"
-    # "Interval data:" may stand before the names of all columns, "Operator:" before a name
+        return False  # a comment that is a setting: "# rate: 10 Hz"
+    # "Interval data:" may precede the names of all columns, "Operator:" a name
     first = 1 if len(cells) == width and len(filled) > 3 else 0
     if any(cell.endswith((":", "=")) for cell in filled[first:]) or not re.search(r"\w", line):
         return False
@@ -149,7 +149,7 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
 
 
 def _is_row_of_units(cells: Sequence[str], grammar: Grammar, width: int) -> bool:
-    """Whether a row is one of units of which few columns have one: ";N"."""
+    """Whether a row contains units for a few columns only: ";N"."""
     if grammar.delimiter == "whitespace" or len(cells) != width:
         return False
     return any(cells) and all(is_unit(cell.strip("[]() ")) for cell in cells if cell)
@@ -161,7 +161,7 @@ def _units_below_names(
     fitting: Mapping[int, tuple[tuple[str, ...], bool]],
     width: int,
 ) -> dict[int, tuple[tuple[str, ...], bool]]:
-    """Return rows of units that blanks part, of which some columns have none, by their places."""
+    """Return rows of units separated by blanks, with units for some columns only, by position."""
     found: dict[int, tuple[tuple[str, ...], bool]] = {}
     for index in above:
         words = list(_WORD.finditer(lines[index]))
@@ -185,7 +185,7 @@ def _units_below_names(
 
 
 def _offset(one: tuple[int, int], other: tuple[int, int]) -> int:
-    """Return by how much two words do not stand below each other, at the end that fits better."""
+    """Return how far two words are out of line, at the end that fits better."""
     return min(abs(one[0] - other[0]), abs(one[1] - other[1]))
 
 
@@ -206,7 +206,7 @@ def names_any(cell: str, *quantities: str) -> bool:
 
 
 def _known(cells: Sequence[str]) -> int:
-    """How many cells hold a known word or are a known symbol."""
+    """Count the cells with a known word or symbol."""
     texts = ["".join(filter(str.isalnum, cell.lower())) for cell in cells[:_TELLING]]
     return sum(text in _SYMBOLS or any(stem in text for stem in _STEMS) for text in texts)
 

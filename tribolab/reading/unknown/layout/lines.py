@@ -21,7 +21,7 @@ _NUMBER = {
     ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
     ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
 }
-# what instruments write where a value should stand; and dates and times of day
+# text in place of a value; and dates and times of day
 _INSTEAD = rf"nan|[+-]?inf|null|n/?a|-{{1,8}}|[*#][*.#]*[a-z{MICRO}]*!?|err\w*|over\w*|ovl|none"
 _MISSING = re.compile(rf"(?i){_INSTEAD}")
 _NO_NUMBER = re.compile(
@@ -32,7 +32,7 @@ _NO_NUMBER = re.compile(
 
 
 _HALVES = re.compile(r"([+-]?\d+),(\d+)")
-_ROWS = 16  # rows that tell
+_ROWS = 16  # rows that decide
 _ONE_NAME = re.compile(r"[^\[\](),;\t]+[\[(][^\[\](),;\t]+[\])]")  # a heading as "Height [nm]"
 
 
@@ -70,7 +70,7 @@ class Grammar:
         return len(cells), max(numbers - text, 1) if is_row else 0
 
     def is_plain(self, line: str) -> bool:
-        """Whether a line holds numbers and empty cells, and nothing else."""
+        """Whether a line consists of numbers and empty cells."""
         stripped = line.strip() if self.delimiter == "whitespace" else line
         return bool(self._plain.fullmatch(stripped)) and any(map(str.isdigit, stripped))
 
@@ -82,7 +82,7 @@ class Grammar:
         return width if merit else 0
 
     def filled(self, line: str) -> int:
-        """Return the number of cells of a line up to the last that holds something."""
+        """Return the number of cells of a line up to the last that is not empty."""
         if self._mark is None:
             return len(self.cells(line))
         return len(line.rstrip(f"{self._mark} ").split(self._mark))
@@ -121,7 +121,7 @@ def find_encoding(head: bytes) -> tuple[str, list[str]]:
     return "utf-8", []
 
 
-_BEGINNING = 1 << 15  # bytes: settings and names stand there
+_BEGINNING = 1 << 15  # bytes that contain settings and names
 _SINGLE_BYTES = (
     *("latin-1", "cp1252", "cp1250", "iso8859-2", "cp1254", "cp1251", "koi8-r", "cp1253"),
     *("cp437", "cp852", "cp866", "mac-roman"),
@@ -136,7 +136,7 @@ def _terms_with_own_letters() -> frozenset[str]:
 
 
 def _of_single_bytes(head: bytes) -> str:
-    """Return in which encoding of one byte a letter most is said in terms of laboratories."""
+    """Return the single-byte encoding that gives the most words of laboratories."""
     said = {}
     for name in _SINGLE_BYTES:
         text = head[:_BEGINNING].decode(name, errors="replace").lower()
@@ -148,7 +148,7 @@ def _of_single_bytes(head: bytes) -> str:
 
 
 def _eastern(head: bytes) -> str:
-    """Return the East Asian or Cyrillic encoding in which a file says known words; "" for none."""
+    """Return the East Asian or Cyrillic encoding that gives known words; "" if there is none."""
     known: dict[str, int] = {}
     for name in _EASTERN:
         try:
@@ -163,7 +163,7 @@ def _eastern(head: bytes) -> str:
 
 
 def find_line_ends(raw: bytes) -> str:
-    """Say how lines end, the commonest first."""
+    """Return the line ends, the most common first."""
     twice = raw.count(b"\r\r\n")
     both = raw.count(b"\r\n") - twice
     counts = {
@@ -181,7 +181,7 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
     filled = [line for line in lines if line.strip()]
     voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
     best, highest = None, 0
-    alone = False  # what stands in no line leaves each whole, and so does the next that does
+    alone = False  # a character that is in no line keeps each whole, as does the next one
     for delimiter in DELIMITERS:
         if delimiter != "whitespace" and not any(delimiter in line for line in voters):
             if alone:
@@ -205,7 +205,7 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
 def _one_column(grammar: Grammar, voters: Sequence[str]) -> bool:
     """Whether commas are decimal marks of one column, and do not part two of whole numbers.
 
-    The heading above tells that it names one, or that numbers follow a comma as in 3,05.
+    The heading above shows that it names one, or that numbers have a comma as in 3,05.
     """
     if grammar.delimiter != ",":
         return False

@@ -1,4 +1,4 @@
-"""What stands above the names in LabVIEW's measurement files (.lvm): units, and what X is.
+"""Header of LabVIEW's measurement files (.lvm): units, and the meaning of X.
 
 The lines are those of the maker's "Specification for the LabVIEW Measurement File (.lvm)", as files
 in the tests of published readers have them: ``Y_Unit_Label`` and ``X_Dimension``, a cell for each
@@ -18,7 +18,7 @@ _DIMENSIONS = {"Time": "s", "Frequency": "Hz"}
 
 
 def units_above(layout: Layout) -> dict[int, str]:
-    """Return the units of the columns (from 1) that lines above the names say.
+    """Return the units of the columns (from 1) from the lines above the names.
 
     Returns
     -------
@@ -28,7 +28,7 @@ def units_above(layout: Layout) -> dict[int, str]:
     heading, said = layout.heading, _said_above(layout)
     if heading is None:
         return {}
-    # without a column of X the first channel stands below the names of the lines
+    # without an X column the first channel is below the names of the lines
     first = 2 if heading.cells[:1] in ((_X,), ("",)) else 1
     units = {
         place: unit for place, unit in enumerate(said.get("Y_Unit_Label", ()), start=first) if unit
@@ -41,7 +41,7 @@ def units_above(layout: Layout) -> dict[int, str]:
 
 
 def interval_above(layout: Layout) -> tuple[str, str] | None:
-    """Return a pattern of the interval of samples, and its unit, where no column of X holds it."""
+    """Return a pattern of the sampling interval and its unit, if there is no X column."""
     said = _said_above(layout)
     apart, of = said.get("Delta_X", []), said.get("X_Dimension", ["Time"])
     if not apart or not apart[0] or of[:1] != ["Time"]:

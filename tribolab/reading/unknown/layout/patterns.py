@@ -47,7 +47,7 @@ def header_pattern(
 
 
 def step_pattern(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
-    """Return a pattern for the steps' numbers, if they stand in the text before each header."""
+    """Return a pattern for the steps' numbers, if they are in the text before each header."""
     texts, done = [], 0
     for block in blocks:
         texts.append(lines[done : block.heading.names if block.heading else block.start])
@@ -86,7 +86,7 @@ def last_lines(file: File, encoding: str) -> list[str]:
 def end_pattern(
     lines: tuple[str, ...], blocks: list[Block], tail: list[str], grammar: Grammar
 ) -> str | None:
-    """Return a pattern for the line that ends the table, if anything stands below it."""
+    """Return a pattern for the line that ends the table, if there is text below it."""
     stops: list[tuple[Sequence[str], int]] = [(lines, block.stop) for block in blocks]
     if tail:
         stops[-1] = (

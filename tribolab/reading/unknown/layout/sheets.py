@@ -1,4 +1,4 @@
-"""Unknown workbooks: which sheet holds the table, and in which row its names stand."""
+"""Unknown workbooks: the sheet of the table, and the row of its names."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
 
 
 def main_sheet(path: Path) -> Held:
-    """Return where the sheet is that holds most rows of numbers below names.
+    """Return the position of the sheet with the most rows of numbers below names.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def main_sheet(path: Path) -> Held:
     Raises
     ------
     ReadError
-        If no sheet holds such rows.
+        If no sheet has such rows.
     """
     tables: list[tuple[int, Held, set[str]]] = []
     for sheet, rows in sheets_of(path, ROWS).items():

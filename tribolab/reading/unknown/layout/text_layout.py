@@ -43,7 +43,7 @@ from tribolab.reading.unknown.layout.patterns import (
 )
 from tribolab.reading.unknown.layout.step_marks import STEP_WORD, Block
 
-_LAST_LINES = 20  # lines at the end that tell what parts cells
+_LAST_LINES = 20  # lines at the end that show the delimiter
 _CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
 _MAX_COLUMNS, _MIN_WIDE_ROWS = 1000, 5  # a lost line end makes few rows of many columns
 _MAX_ABOVE = 500  # lines of text above a table that are looked at
@@ -120,7 +120,7 @@ class Layout(NamedTuple):
 
     @property
     def units_line(self) -> int:
-        """In which line below the names the units stand; a row of delimiters does not count."""
+        """Line of the units below the names; a row of delimiters does not count."""
         heading = self.heading
         if heading is None or heading.units is None:
             return 0
@@ -297,7 +297,7 @@ def _first_number(line: str, grammar: Grammar) -> float:
 def _rows_that_may_belong(
     lines: Sequence[str], blocks: Sequence[Block], main: Sequence[Block], grammar: Grammar
 ) -> list[str]:
-    """Say of rows below a line of text that they are not read: the table may go on there."""
+    """Note rows below a line of text that are not read, although the table may continue."""
     chosen = next(n for n, block in enumerate(blocks) if block.stop >= main[-1].stop)
     later = blocks[chosen + 1 :]
     alike = (b for b in later if b.heading is None and b.width == main[-1].width)

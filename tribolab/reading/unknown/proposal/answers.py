@@ -16,7 +16,7 @@ AnyDraft = TypeVar("AnyDraft", bound=Drafted)
 
 
 def column_of(draft: Drafted, name: str) -> DraftColumn | None:
-    """Return the column that holds a quantity, or would if its unit were known."""
+    """Return the column of a quantity, even if its unit is still unknown."""
     columns = draft.understood.columns if draft.understood else ()
     held = [c for c in columns if c.quantity == name and (c.used or c.fill_in)]
     return held[0] if held else None
@@ -37,7 +37,7 @@ def corrected(
     *,
     scale: float = 1.0,
 ) -> AnyDraft:
-    """Return a draft in which a person has said which column holds a quantity.
+    """Return a draft with a column assigned to a quantity by a person.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def corrected(
         The quantity; or "torque" or "angle", which a radius makes a friction force or
         a position.
     place
-        Number of its column, from 1; None if no column holds it.
+        Number of its column, from 1; None without a column.
     unit
         What its numbers are written in; None if the file says it.
     sign

@@ -1,4 +1,4 @@
-"""What one number of a column is worth, as a person says it: a unit, or an amount of it."""
+"""Calibration of a column as stated by a person: a unit, or an amount of a unit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Worth(NamedTuple):
 
 
 def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> Worth:
-    """Understand a unit, or what one number of a column stands for.
+    """Interpret a unit, or the calibration of a column.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> W
     names
         Quantities that it may measure, `TORQUE`, or `ANGLE`; the first whose unit it is.
     read_unit
-        What the file says the column is written in.
+        The unit of the column according to the file.
 
     Raises
     ------

@@ -30,7 +30,7 @@ _MAX_SETTINGS = 12  # values that a long preamble states
 
 
 class Described(NamedTuple):
-    """What was understood of a file, as a dialect says it.
+    """What was understood of a file, as a dialect.
 
     `stated` are single values of the file that are used, `proposed` others.
     """
@@ -49,12 +49,12 @@ class Described(NamedTuple):
 
     @property
     def load(self) -> str:
-        """The load that a person stated, where nothing else tells it."""
+        """The load that a person stated, if there is no other information."""
         return self.understood.load if self.lacks_load else ""
 
     @property
     def lacks_load(self) -> bool:
-        """Whether a run holds friction, and nothing that presses."""
+        """Whether a run contains friction but no load."""
         columns, known = self.understood.columns, self.known
         if self.understood.kind != "run" or any(column.fill_in for column in columns):
             return False
@@ -63,14 +63,14 @@ class Described(NamedTuple):
 
     @property
     def known(self) -> set[str]:
-        """Quantities that columns hold, if only their unit is missing, or that follow."""
+        """Quantities of columns that lack only a unit, and quantities that follow."""
         columns = self.understood.columns
         known = {c.quantity for c in columns if c.quantity and (c.used or c.fill_in)}
         return known | {formula.quantity for formula in self.follows.formulas}
 
 
 def describe(layout: Layout, understood: Understood) -> Described:
-    """Return what a dialect has to say of a file."""
+    """Return the dialect of a file."""
     follows = what_follows(layout, understood)
     proposed, stated = _values(layout, understood, follows)
     if layout.delimiter == "whitespace":
@@ -142,13 +142,13 @@ def dialect_of(name: str, described: Described) -> Dialect:
 
 
 def set_keys(model: type[BaseModel], content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is said otherwise than by default."""
+    """Return the settings that differ from the defaults."""
     fields = model.model_fields
     return {key: said for key, said in content.items() if said != fields[key].default}
 
 
 def column_content(column: DraftColumn, symbol: str = "") -> dict[str, Any]:
-    """Return what [[column]] says of a column, which a symbol may name for formulas."""
+    """Return the [[column]] entry of a column, with a symbol for formulas if needed."""
     said = {
         **({"symbol": symbol} if symbol else {"quantity": column.quantity}),
         "name": column.name,
@@ -166,13 +166,13 @@ def column_content(column: DraftColumn, symbol: str = "") -> dict[str, Any]:
 
 
 def value_content(value: Amount) -> dict[str, Any]:
-    """Return what [[value]] says of a single value."""
+    """Return the [[value]] entry of a single value."""
     keys = ("name", "source", "pattern", "unit", "scale", "to")
     return set_keys(Value, {key: getattr(value, key) for key in keys})
 
 
 def formula_content(quantity: str, formula: str, zero: str = "", way: str = "") -> dict[str, Any]:
-    """Return what [[derived]] says of a quantity that follows from others."""
+    """Return the [[derived]] entry of a quantity that follows from others."""
     said = {"quantity": quantity, "formula": formula, "zero": zero or None, "way": way or "both"}
     return set_keys(Derived, said)
 
@@ -241,7 +241,7 @@ def _time(understood: Understood) -> dict[str, Any]:
     if clocks:
         said["source"] = "period" if understood.period else "column"
     elif understood.rate_pattern:
-        paced = converts(understood.rate_unit, "m/s")  # as fast as a machine goes on
+        paced = converts(understood.rate_unit, "m/s")  # as fast as a machine moves
         said["source"] = "position" if paced else "rate"
         said |= {"rate_pattern": understood.rate_pattern, "rate_unit": understood.rate_unit}
     elif understood.rate:
@@ -292,7 +292,7 @@ def any_blanks(pattern: str | None) -> str | None: ...
 
 
 def any_blanks(pattern: str | None) -> str | None:
-    r"""Return a pattern that holds for any number of blanks or tabs where it has some.
+    r"""Return a pattern in which blanks or tabs match any number of them.
 
     In a table whose cells are separated by blanks, the reader sees one tab for each run of blanks.
 

@@ -1,4 +1,4 @@
-"""Draft a dialect from an unknown raw file: how it is written and what its columns hold."""
+"""Draft a dialect from an unknown raw file: its layout and the quantities of its columns."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     """
     file = peek(path)
     name = dialect_name(file.path if name is None else name)
-    with np.errstate(all="ignore"):  # an unknown file may hold any number
+    with np.errstate(all="ignore"):  # an unknown file may contain any number
         return _drafted(file, name)
 
 
@@ -123,7 +123,7 @@ def _understood(file: File) -> tuple[Layout, Understood]:
             where=file.path,
         )
     layout, columns = layout_of_columns(file)
-    assert layout.held is not None  # whoever lays columns out says where they are
+    assert layout.held is not None  # a person who describes columns states their positions
     return layout, as_held(understand(layout), columns, layout.held)
 
 
@@ -212,7 +212,7 @@ def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
     pitch
         The distance of neighbouring heights, with its unit.
     unit
-        What the heights are written in; None if the file says it.
+        Unit of the heights; None if the file states it.
     """
     understood = draft.understood
     if understood is None:
@@ -236,7 +236,7 @@ def _as_height(column: DraftColumn, unit: str | None) -> DraftColumn:
 
 
 def _answer(file: File, understood: Understood) -> str:
-    """Say what a table is that holds neither signals nor a profile."""
+    """Return what a table is if it contains neither signals nor a profile."""
     # late: starting stays quick
     from tribolab.reading.scans.formats.profilometers import read_foreign
 

@@ -36,11 +36,11 @@ class Drafted:
     kind
         ``run``, ``scan``, or ``table``: numbers that are neither, for which there is no dialect.
     layout, understood
-        How the file is written and what its columns hold; None for a file of results.
+        Layout of the file and quantities of its columns; None for a file of results.
     answer
         For a table: what the file is, and what reads it.
     cells
-        The first rows as they stand in the file.
+        The first rows, as written in the file.
     known
         The known instrument that reads the file already; empty if there is none.
     unsaid
@@ -96,7 +96,7 @@ class Drafted:
 
     @property
     def named(self) -> bool:
-        """Whether names in a header, and not the numbers alone, say what the columns hold."""
+        """Whether names in a header, and not only numbers, give the columns' quantities."""
         columns = self.understood.columns if self.understood else ()
         if any(column.label and column.quantity for column in columns):
             return True

@@ -34,8 +34,8 @@ _UNSAID = {
 _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
 _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
-_TOLD = 12  # questions of one file that are told in a line
-_LINES = 3  # of five, that say what is unclear or missing
+_TOLD = 12  # questions of one file that are listed in a line
+_LINES = 3  # of five, for what is unclear or missing
 _LISTED = 6  # columns that are listed as understood
 _UNKNOWN = "no known instrument writes such a file, and it does not say all itself"
 _MAX_BESIDE = 50  # descriptions in the file's folder that are looked at
@@ -44,7 +44,7 @@ _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
 
 
 class Question(NamedTuple):
-    """One thing that the file does not say: about what, the guess, what else it may be."""
+    """One open point of a file: its subject, the guess and the alternatives."""
 
     about: str
     guess: str
@@ -58,7 +58,7 @@ class Question(NamedTuple):
 
 
 def questions(draft: Drafted) -> list[Question]:
-    """Return what had to be guessed of a file, or is missing; none if its header says it all."""
+    """Return what was guessed or is missing in a file; empty if its header is complete."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return []
@@ -84,14 +84,14 @@ def questions(draft: Drafted) -> list[Question]:
     moves = bool(held & {"sliding_velocity", "position"}) and "time" in held
     for column in understood.columns:
         if moves and column.quantity == "rotation_speed" and column.fill_in:
-            continue  # how it moves is told without it
+            continue  # the motion is known without it
         if column.guessed or column.fill_in:
             asked.append(_of_column(layout, column))
     return asked
 
 
 def _of_texts(understood: Understood) -> list[Question]:
-    """Ask for what is written where numbers should stand: nothing of it is lost in silence."""
+    """Ask about text in place of numbers, so that none is dropped silently."""
     asked = []
     held = {column.quantity for column in understood.columns if column.used}
     for column in understood.columns:
@@ -135,13 +135,13 @@ def _of_column(layout: Layout, column: DraftColumn) -> Question:
 
 
 def lacks_friction(draft: Drafted) -> bool:
-    """Whether a run holds a torque of which no radius is known, and no friction else."""
+    """Whether a run contains a torque without a radius, and no other friction signal."""
     lacks = (lack for lack in _lacks(draft) if lack.member != "friction_force")
     return any("friction" in lack.goals for lack in lacks)
 
 
 def missing_words(draft: Drafted) -> list[str]:
-    """Return what a run's file does not say and a friction coefficient over speed needs."""
+    """Return what is missing for a friction coefficient over speed."""
     lacks = _lacks(draft)
     unused = [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
     if draft.layout is None or draft.understood is None:
@@ -157,7 +157,7 @@ def missing_words(draft: Drafted) -> list[str]:
 
 
 def without_unit_and_missed(draft: Drafted) -> list[str]:
-    """Return the lines that may say what a run lacks, had they a unit: 'Stroke=12'."""
+    """Return lines that may state a missing value but have no unit: 'Stroke=12'."""
     return _unused(draft, _lacks(draft))
 
 
@@ -192,7 +192,7 @@ def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
 
 
 def missing_height_unit(draft: Drafted) -> str:
-    """Return what heights alone leave open, with the lines that say too little of it.
+    """Return what heights alone leave open, with the lines that are not clear enough.
 
     Parameters
     ----------
@@ -205,9 +205,9 @@ def missing_height_unit(draft: Drafted) -> str:
 
 
 class GuessedError(ReadError):
-    """A file could be read only by guessing: at most five lines say what is open.
+    """A file could be read only by guessing: at most five lines list the open points.
 
-    In a campaign everything stands in one line.
+    In a campaign everything is in one line.
     """
 
     def __init__(
@@ -265,7 +265,7 @@ def understood_columns(draft: Drafted) -> list[str]:
 
 
 def _drafts_of(path: object) -> list[str]:
-    """Return the descriptions beside a file that were drafted from it, as they are named there."""
+    """Return the names of dialects in the file's folder that were drafted from it."""
     file = Path(str(path))
     first = f"# Drafted from '{file.name}'."
     found = []

@@ -1,4 +1,4 @@
-"""What a drafted dialect says in comments: what was guessed, what is not used, what is missing."""
+"""Comments of a drafted dialect: what was guessed, is unused, or is missing."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _sample_rate(described: Described) -> tuple[str, ...]:
 
 
 def _rotation(described: Described) -> tuple[str, ...]:
-    """Propose how the speed may follow, where nothing tells it yet."""
+    """Propose rules for a speed that is still unknown."""
     understood = described.understood
     names = {column.quantity for column in understood.columns if column.used}
     if described.follows.speed is not None or understood.kind != "run":

@@ -183,7 +183,7 @@ def _with_unit(name: str) -> str:
 
 
 def _cells_table(draft: Drafted) -> Table:
-    """Return the first rows as they stand in the file, under its header if there is one."""
+    """Return the first rows as written in the file, below its header if there is one."""
     width = min(max((len(row) for row in draft.cells), default=0), _COLUMNS)
     heading = draft.layout.heading if draft.layout else None
     cells = list(heading.cells if heading else ()) + [""] * width
