@@ -1,4 +1,4 @@
-"""How fast and how lean `tribolab.read` is beside pandas' C reader and polars.
+"""Time and memory of `tribolab.read` next to pandas' C reader and polars.
 
 Usage: python tests/benchmarks/bench_read.py [rows] [repeats]
 
