@@ -1,6 +1,6 @@
 """Friction of line contacts at rest and in motion, as stored before other contacts were added.
 
-``python tests/lubrication/line_contact_numbers.py`` writes them anew.
+``python tests/lubrication/line_contact_numbers.py`` writes them again.
 """
 
 from __future__ import annotations

@@ -8,14 +8,14 @@ from contact_cases import CONTACT, reference_psd
 
 from tribolab.contact.geometry import PointContact
 from tribolab.contact.hertz import hertz_half_width
-from tribolab.fit.left_out import left_out
+from tribolab.fit.left_out import effects_not_modelled
 from tribolab.surface.moments import rms_roughness
 
 LOAD = 310.0
 
 
 def sizes(*given):
-    return {effect.name: effect.size for effect in left_out(*given)}
+    return {effect.name: effect.size for effect in effects_not_modelled(*given)}
 
 
 def numbers(text):

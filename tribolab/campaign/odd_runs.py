@@ -76,7 +76,8 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
             said[name] = _row("skipped", text) if alone else _row("pass", sound)
     for odd in odd_repeats([np.log(condition.levels) for condition in conditions]):
         runs = conditions[odd.condition].runs
-        usual = f"other repeats by {percent(odd.repeatability)} (standard deviation)"
+        scatter = percent(odd.repeatability)
+        usual = f"while other repeats scatter by {scatter} (standard deviation)"
         if odd.repeat < 0:
             for name, other in (runs, runs[::-1]):
                 text = (

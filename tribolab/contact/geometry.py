@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
@@ -12,7 +13,7 @@ from tribolab.core.errors import AnalysisError
 from tribolab.units.conversion import positive, to_si
 
 
-class Elasticity:
+class Elasticity(ABC):
     """Common parameters of line and point contacts: radius, layer and elastic bodies."""
 
     radius: float
@@ -55,9 +56,9 @@ class Elasticity:
             return None
         return Layer(self.thickness / length, self.poisson_ratio, self.compliance_share)
 
+    @abstractmethod
     def force(self, load: float) -> float:
         """Return the normal force [N] of a load in the unit of the theory."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ class LeftOut(NamedTuple):
     why: str
 
 
-def left_out(
+def effects_not_modelled(
     contact: Contact, load: float, viscosity: float, psd: xr.Dataset | None
 ) -> list[LeftOut]:
     """Return the effects that are neither in the model nor varied, with their size if known.
@@ -41,7 +41,7 @@ def left_out(
     Examples
     --------
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
-    >>> [effect.name for effect in left_out(contact, 310.0, 1.4, None)]
+    >>> [effect.name for effect in effects_not_modelled(contact, 310.0, 1.4, None)]
     ['thickness', 'edge load', 'misalignment', 'crown']
     """
     a = float(hertz_half_width(load, contact))
@@ -65,7 +65,7 @@ def left_out(
     ]
 
 
-def left_out_words(effects: Sequence[LeftOut]) -> str:
+def describe_effects(effects: Sequence[LeftOut]) -> str:
     """Return the effects as text, with their sizes."""
     return "; ".join(f"{e.name} ({e.size or 'size unknown'}): {e.why}" for e in effects)
 

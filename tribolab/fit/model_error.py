@@ -15,7 +15,7 @@ from tribolab.contact.persson import rough_band
 from tribolab.core.errors import AnalysisError
 from tribolab.core.validity import reasons_of, together
 from tribolab.fit import limits
-from tribolab.fit.left_out import left_out, left_out_words
+from tribolab.fit.left_out import describe_effects, effects_not_modelled
 from tribolab.fit.unknowns import Range, Unknowns, merge_old_options
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import fixed_parameters, variations
@@ -178,7 +178,7 @@ def model_uncertainty(
         data.assign_attrs(curve.attrs),
         **{"load_N" if contact.is_round else "load_N_m": force},
         not_varied="; ".join(f"{name}: {reason}" for name, reason in left + fixed_parameters(base)),
-        not_in_model=left_out_words(left_out(contact, force, base.viscosity, psd)),
+        not_in_model=describe_effects(effects_not_modelled(contact, force, base.viscosity, psd)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",
         **together([curve.attrs, *attributes]),

@@ -18,7 +18,7 @@ from tribolab.core.untyped import Arguments
 from tribolab.core.wording import explain, speed_text
 from tribolab.fit.fit_settings import FitSettings
 from tribolab.fit.input_error import model_inputs, moved_friction
-from tribolab.fit.left_out import left_out
+from tribolab.fit.left_out import effects_not_modelled
 from tribolab.fit.model_error import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.unknowns import Unknowns
@@ -129,7 +129,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
                 contact, psd, liquid, load, interface, solver=solver, unknowns=unknowns
             ),
         )
-    found = left_out(contact, load, model.viscosity, psd)
+    found = effects_not_modelled(contact, load, model.viscosity, psd)
     groups["left_out"] = xr.Dataset(
         {
             "size": ("effect", np.array([effect.size for effect in found], dtype=str)),

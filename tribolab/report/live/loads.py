@@ -7,11 +7,10 @@ from tribolab.figures.colours import surface_colours
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.records.parts import Row, number_of
 from tribolab.report.live.curves import FrictionOverSpeed, system_name, systems
-from tribolab.report.live.points import point_error
+from tribolab.report.live.points import MAX_SPEED_RATIO, point_error
 from tribolab.report.plain import plain_speed
 
 _MIN_LOADS = 2
-_MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
 _LOAD, _MU = Axis("normal force", "N"), Axis("friction coefficient µ")
 
 
@@ -73,7 +72,7 @@ def _at(points: tuple[Row, ...], speed: float) -> Row | None:
         v = number_of(row, "sliding_speed_m_s")
         if (
             v
-            and speed / _MAX_SPEED_RATIO <= v <= speed * _MAX_SPEED_RATIO
+            and speed / MAX_SPEED_RATIO <= v <= speed * MAX_SPEED_RATIO
             and row["friction_coefficient"] is not None
         ):
             return row

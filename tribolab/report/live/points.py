@@ -17,7 +17,7 @@ from tribolab.records.wording import error_text
 from tribolab.report.plain import plain_speed
 
 _NAMED = 4  # runs named at a point
-_MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
+MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
 
 
 class RunPoint(NamedTuple):
@@ -128,7 +128,7 @@ def at_speed(points: Sequence[RunPoint], speed: float) -> list[RunPoint]:
     return [
         point
         for point in points
-        if speed / _MAX_SPEED_RATIO <= point.speed <= speed * _MAX_SPEED_RATIO
+        if speed / MAX_SPEED_RATIO <= point.speed <= speed * MAX_SPEED_RATIO
     ]
 
 

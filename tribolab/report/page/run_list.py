@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from tribolab.core.wording import MINUS
 from tribolab.records.judgement import is_bad, status_word, why
 from tribolab.records.wording import UNITS, error_text
-from tribolab.report.live.points import RunPoint, at_speed
+from tribolab.report.live.points import MAX_SPEED_RATIO, RunPoint, at_speed
 from tribolab.report.page.sparkline import spark_path
 from tribolab.report.plain import plain_speed
 
@@ -19,7 +19,6 @@ _WORST_FIRST: tuple[str, ...] = ("failed", "rejected", "error", "rejected by han
 _WORST_FIRST += (_ODD, "suspect", "accepted")
 _ALL, _STEADY = "all speeds", "steady"
 _DIGITS = 6  # digits of a deviation, so that those of two repeats are equal
-_MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
 
 
 class ListedRun(NamedTuple):
@@ -106,7 +105,7 @@ def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
     """Return the distinct speeds of all runs; neighbours count as one."""
     speeds: list[float] = []
     for speed in sorted({point.speed for of_run in points.values() for point in of_run}):
-        if speed > (_MAX_SPEED_RATIO * speeds[-1] if speeds else 0):
+        if speed > (MAX_SPEED_RATIO * speeds[-1] if speeds else 0):
             speeds.append(speed)
     return speeds
 

@@ -109,10 +109,10 @@ def _asked(speed: SpeedBy, value: Amount, about: str) -> SpeedBy:
     its = key_pattern("own_speed").search(value.key) and not _ANOTHER_SPEED.search(value.text)
     if value.source == "step" or its:
         return speed
-    told = value.text
-    if value.source == "file name" and (match := re.search(value.pattern, told)):
-        told = match[0].strip("_.")
-    return speed._replace(guess=f"'{told}' {about}", options=("not known",))
+    text = value.text
+    if value.source == "file name" and (match := re.search(value.pattern, text)):
+        text = match[0].strip("_.")
+    return speed._replace(guess=f"'{text}' {about}", options=("not known",))
 
 
 def _by_strokes(

@@ -276,13 +276,13 @@ def _with_rows_that_go_on(
     clock = [_first_number(lines[index], grammar) for index in rows]
     if not events or not (np.diff(clock) > 0).all():
         return main, None
-    words = sorted({_FIRST_WORDS.match(event)[0] for event in events})  # type: ignore[index]
+    words = sorted({_AFTER_WORDS.split(event, maxsplit=1)[0] for event in events})
     pattern = f"^(?:{'|'.join(map(escaped, words))})"
     return [main[0]._replace(stop=rows[-1] + 1, rows=tuple(rows))], pattern
 
 
 _SETS = re.compile(rf"{STEP_WORD}\D{{0,5}}\d", re.IGNORECASE)
-_FIRST_WORDS = re.compile(r"[^\d=:]*")
+_AFTER_WORDS = re.compile(r"[\d=:]")
 
 
 def _amounts(line: str) -> bool:
