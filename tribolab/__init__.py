@@ -28,7 +28,7 @@ _PUBLIC = {
     "read_scans": "tribolab.reading.scan_files",
     "read_results": "tribolab.report.results_folder",
     "variables": "tribolab.units.variable_table",
-    "check": "tribolab.qc.run.checks",
+    "check": "tribolab.qc.any_data",
     "find_segments": "tribolab.friction.segments.find",
     "decide": "tribolab.friction.decisions.decided_segments",
     "friction_coefficient": "tribolab.friction.coefficient.coefficient",
@@ -128,7 +128,7 @@ if TYPE_CHECKING:
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.lubrication.parameters import Liquid
     from tribolab.lubrication.stribeck import stribeck_curve
-    from tribolab.qc.run.checks import check
+    from tribolab.qc.any_data import check
     from tribolab.reading.run_files import read
     from tribolab.reading.scan_files import read_scans
     from tribolab.report.results_folder import read_results

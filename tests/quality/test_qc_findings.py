@@ -10,9 +10,10 @@ import xarray as xr
 from tribolab.core.errors import ConfigError, UnitError
 from tribolab.core.limit_page import LIMITS_PAGE, limits_page
 from tribolab.qc import catalogue
+from tribolab.qc.any_data import check
 from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.register import STATUSES, Check, Result
-from tribolab.qc.run.checks import RUN_CHECKS, check, check_run
+from tribolab.qc.run.checks import RUN_CHECKS, check_run
 from tribolab.qc.scan.checks import SCAN_CHECKS
 from tribolab.reading.schema_folder import schema_folder
 from tribolab.units.conversion import to_si

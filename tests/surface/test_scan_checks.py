@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from real_runs import mitutoyo
 
+import tribolab as tl
 from tribolab import rig
 from tribolab.core.errors import AnalysisError, ConfigError, UnitError
 from tribolab.qc.flags import SUSPECT
@@ -330,3 +331,11 @@ def test_a_map_whose_heights_are_far_larger_than_itself_is_suspect(shared_data):
     assert doubt_about_heights(bare) == "" and impossible_heights(bare) == ""
     assert "rms slope" in doubt_about_heights(bare.assign(height=1000 * bare.height))
     assert "no instrument" in impossible_heights(bare.assign(height=1e6 * bare.height))
+
+
+def test_the_public_check_takes_scans_alone_and_compares_those_of_a_list():
+    scans = [made(rough(1)), made(rough(2)), made(9 * rough(3))]
+    assert tl.check(scans[0]).rows == check_scans(scans[0]).rows
+    assert [found.status for found in tl.check(scans)] == ["pass", "pass", "fail"]
+    with pytest.raises(AnalysisError, match="^check was given the text 'a.csv' as run"):
+        tl.check("a.csv")

@@ -32,7 +32,7 @@ class OfRuns(Protocol[P, R]):
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R: ...
 
 
-def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
+def of_runs(function: Callable[P, R], public_name: str = "") -> OfRuns[P, R]:
     """Extend a function of a run to lists of runs, for which it returns a list.
 
     Other arguments that are lists of datasets are paired with the runs; the rest apply to all.
@@ -51,13 +51,14 @@ def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
     tribolab.core.errors.AnalysisError: length was given the text 'run.csv' as run; read the file \
 first: tl.read('run.csv')
     """
+    name = public_name or function.__name__
     of_a_run = next(iter(inspect.signature(function).parameters)) == "run"
 
     @functools.wraps(function)
     def with_lists(*args: Any, **kwargs: Any) -> Any:
         for run in args[:1] if of_a_run else ():
             for each in run if isinstance(run, list) else [run]:
-                _require_run(function.__name__, each)
+                _require_run(name, each)
         if not args or not isinstance(args[0], list):
             return function(*args, **kwargs)
         count = len(args[0])
@@ -66,7 +67,7 @@ first: tl.read('run.csv')
         for key, value in own.items():
             if len(value) != count:
                 raise AnalysisError(
-                    f"{function.__name__}: {count} runs are given, and {len(value)} datasets as "
+                    f"{name}: {count} runs are given, and {len(value)} datasets as "
                     f"{_name(function, key)}; give one for each run"
                 )
         return [_call_each(function, given, own, len(args), number) for number in range(count)]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from scipy.interpolate import BSpline
-from scipy.stats import f as f_distribution
+from scipy.special import fdtrc
 
 from tribolab.core.errors import AnalysisError
 
@@ -133,7 +133,7 @@ def collapse_test(
     order = np.argsort(x)
     return Collapse(
         float(statistic),
-        float(f_distribution.sf(statistic, extra, freedom)),
+        float(fdtrc(extra, freedom, max(statistic, 0.0))),
         np.append(0.0, found[: len(own)]),
         np.append(0.0, found[len(own) :]),
         np.exp(x[order]),

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Never
+from typing import Never
 
 import numpy as np
 import xarray as xr
 
-from tribolab.arrays.broadcasting import of_runs
 from tribolab.core.errors import ConfigError, nearest, shown
 from tribolab.friction.decisions.rejected import kept, rejected
 from tribolab.qc.findings import Findings
@@ -160,33 +159,3 @@ def _flag_unexamined(results: dict[str, list[Result]]) -> dict[str, list[Result]
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):
         return results
     return results | {_SEGMENTS: [Result("suspect", "", _NOTHING_EXAMINED, cure=_EXAMINE)]}
-
-
-@of_runs
-def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -> Findings:
-    """Run all checks on a run; short for `check_run`, with the same options.
-
-    Parameters
-    ----------
-    run, segments
-        The run dataset (time); its segments, found if not given. A list of runs gives a list.
-    **options
-        As for `check_run`: ``friction``, ``slip``, ``limits``, ``skip``, ``normal_force``,
-        ``contact_width``.
-
-    Returns
-    -------
-    Findings
-        See `check_run`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> time = np.arange(400) / 100
-    >>> noise = 0.01 * np.random.default_rng(0).standard_normal(400)
-    >>> run = xr.Dataset({"friction_force": ("time", 1 + noise)}, {"time": time})
-    >>> run = run.assign(sliding_velocity=("time", np.full(400, 1e-3)))
-    >>> check(run).status, check(run.assign_attrs(friction_force_zero_uncertainty_N=0.01)).status
-    ('suspect', 'pass')
-    """
-    return check_run(run, segments, **options)
