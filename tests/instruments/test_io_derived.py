@@ -134,11 +134,13 @@ def test_units_that_do_not_fit_are_told(tmp_path, formula, said):
     ("formula", "said"),
     [
         ("torque / radius", "called 'radius'"),
-        ("torque / ", "its end is where"),
-        ("__import__('os')", "is where"),
-        ("torque ** 2", "is where"),
+        ("torque / ", "invalid syntax"),
+        ("__import__('os')", "'__import__.'os'.' is none of them"),
+        ("torque ** 2", "'torque .. 2' is none of them"),
+        ("torque * True", "'True' is none of them"),
+        ("torque / 'a' 'b'", "is none of them"),
         ("torque / '3 parsnips'", "parsnips"),
-        ("(" * 40 + "torque" + ")" * 40, "nested deeper"),
+        ("(" * 250 + "torque" + ")" * 40, "has to be names and numbers"),
     ],
 )
 def test_formulas_that_cannot_be_are_refused_when_the_dialect_is_read(tmp_path, formula, said):

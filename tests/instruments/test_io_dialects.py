@@ -301,21 +301,6 @@ def test_a_dialect_is_written_as_it_was_read(name, tmp_path):
     assert load_dialect(file) == load_dialect(name)
 
 
-@pytest.mark.parametrize(
-    "key",
-    ["[rows]\nleft_out = 0.5", "[text]\narrangement = 'json'", "[header]\nline = 1\nonly = 'a'"],
-)
-def test_a_key_that_the_next_release_removes_works_and_warns(key, tmp_path):
-    table, name = re.match(r"\[(\w+)\].*\n(\w+) =", key, re.DOTALL).groups()
-    parts = dict(re.findall(r"(?ms)^\[(\w+)\]\n(.*?)(?=^\[|\Z)", BASE))
-    text = BASE.replace(f"[{table}]\n{parts.get(table, '')}", "") + f"{key}\n"
-    (tmp_path / "mine.toml").write_text(text)
-    with pytest.warns(FutureWarning, match=rf"{table}\.{name} will be removed"):
-        dialect = load_dialect(tmp_path / "mine.toml")
-    assert getattr(getattr(dialect, table), name)
-    assert name not in json_schema()["$defs"][table.capitalize()]["properties"]
-
-
 def test_a_run_says_where_no_file_of_its_instrument_was_seen(tmp_path):
     file = tmp_path / "a.csv"
     file.write_text("Imada ZT\nNo,Time [s],Force [N]\n" + "".join(f"{n},{n},1\n" for n in range(9)))

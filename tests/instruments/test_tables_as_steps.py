@@ -121,7 +121,7 @@ def test_rows_of_hdf5_have_units_in_a_list_and_names_that_only_a_text_explains(t
     assert curve(tmp_path / "told.h5")[2] == pytest.approx([0.3], rel=0.03)
 
 
-def test_a_sled_that_is_lifted_on_its_way_back_has_no_load_there(tmp_path):
+def test_a_sled_that_is_lifted_on_its_way_back_is_asked_about(tmp_path):
     rest, out = np.zeros(200), np.linspace(0, 100, 2000)
     cycle = np.concatenate([rest, out, np.full(200, 100.0), np.linspace(100, 0, 500)])
     way = np.tile(cycle, 3) + 0.01 * NOISE.standard_normal(3 * cycle.size)
@@ -132,12 +132,8 @@ def test_a_sled_that_is_lifted_on_its_way_back_has_no_load_there(tmp_path):
     head = "Sled mass: 203.9 g\nRemark: sled lifted off during return, cell not tared\n"
     names = "Time [s];Position [mm];Friction force [N]\n"
     (tmp_path / "sled.txt").write_text(f"{head}{names}{rows}\n")
-    run, speed, coefficient = curve(tmp_path / "sled.txt")
-    np.testing.assert_allclose(coefficient, 0.3, rtol=0.02)
-    np.testing.assert_allclose(speed, 5.0, rtol=0.01)
-    assert coefficient.size == 3 and (run.normal_force.values == 0).mean() == pytest.approx(
-        500 / cycle.size, abs=0.01
-    )
+    with pytest.raises(ReadError, match="although 'Remark: sled lifted off during return"):
+        tl.read(tmp_path / "sled.txt")
 
 
 def test_friction_that_is_counted_against_the_motion_is_turned(tmp_path):

@@ -95,19 +95,10 @@ def test_several_traces_in_a_file_are_scans_of_one_surface(tmp_path, titles):
 
 
 @pytest.mark.parametrize("titles", [("Raw", "Filtered"), ("Primary profile", "Roughness profile")])
-def test_versions_of_one_trace_are_told_apart_and_one_is_chosen(tmp_path, titles):
+def test_versions_of_one_trace_are_no_scans_of_one_surface(tmp_path, titles):
     path = written(tmp_path, tables(*titles))
     with pytest.raises(ReadError, match=f"no traces of one scan.*'{titles[0]}', '{titles[1]}'"):
         read_scans(path)
-    toml = save_draft(draft_dialect(path), tmp_path / "own.toml")
-    text = toml.read_text()
-    toml.write_text(text.replace("[header]\n", f"[header]\nonly = '^{titles[1]}'\n"))
-    scan = read_scans(path, toml)
-    assert scan.sizes["scan"] == 1
-    np.testing.assert_allclose(scan.height[0], 1e-5 * Z, rtol=0, atol=1e-10)
-    toml.write_text(text.replace("[header]\n", "[header]\nonly = 'Waviness'\n"))
-    with pytest.raises(ReadError, match="no table's text matches 'Waviness'; there are: 'Raw'|'Pr"):
-        read_scans(path, toml)
 
 
 def dialect(tmp_path, *lines, value=""):

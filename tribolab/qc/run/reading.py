@@ -25,7 +25,6 @@ def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
     for log, variable in (("", "time"), ("companion_", "companion log")):
         rows = int(attrs.get(f"{log}rows_in_file", 0))
         lost = int(attrs.get(f"{log}rows_left_out", 0))
-        meant = float(attrs.get(f"{log}rows_left_out_meant", 0.0))
         share = lost / rows if rows else 0.0
         if not lost:
             if rows:
@@ -33,12 +32,8 @@ def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
             continue
         text = f"{lost} of {Count(rows):row|rows} ({share:.2%}) left out: "
         text += str(attrs.get(f"{log}rows_left_out_why", ""))
-        if share <= meant:
-            text += f"; the dialect means up to {meant:.2%} to be left out"
-            status = "pass"
-        else:
-            status = "fail" if share > limits["fail"] else "suspect"
-            status = status if share > limits["suspect"] else "pass"
+        status = "fail" if share > limits["fail"] else "suspect"
+        status = status if share > limits["suspect"] else "pass"
         results.append(Result(status, variable, text, share, count=lost, noted=True))
     return results + _uncovered_rows(subject, limits)
 
@@ -179,8 +174,7 @@ READING_CHECKS = (
         "rows_left_out",
         25,
         "Was every row of the file read?",
-        "State in the dialect how to keep them (restart, on_repeat, end) or, if this is "
-        "intended, how many may be left out: [rows] left_out = 0.2.",
+        "State in the dialect how to keep them (restart, on_repeat, end).",
         {
             "suspect": Limit(
                 0.01, "1", "one incomplete row or a few repeated time stamps are no loss"

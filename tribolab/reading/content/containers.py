@@ -12,7 +12,7 @@ from tribolab.reading.content.model import Content, Piece
 from tribolab.reading.content.steps import started
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 from tribolab.reading.dialect.columns import AGAIN, ReadColumn, resolve, scales_of, symbols
-from tribolab.reading.dialect.containers import name_and_unit, named_tables, open_as, tables_of
+from tribolab.reading.dialect.containers import name_and_unit, open_as, tables_of
 from tribolab.reading.dialect.file_layout import Marks
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.raw.clocks import OneClock, on_one_clock
@@ -20,8 +20,6 @@ from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, text_of
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name
 from tribolab.units.conversion import conversion
-
-_NAMED = 8  # most tables named in an attribute
 
 
 def read_columns(path: Path, dialect: Dialect) -> Content:
@@ -32,27 +30,22 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
     path
         The file.
     dialect
-        Its format, which tables are steps, and which column is which quantity.
+        Its format, and which column is which quantity.
 
     Raises
     ------
     ReadError
-        If the file is damaged, a table or column is missing or not numeric, or columns differ in
-        length.
+        If the file is damaged, a column is missing or not numeric, or columns differ in length.
     """
     file = _opened(path, dialect)
     tables = tables_of(file, dialect)
-    if not tables:
-        steps = shown(dialect.tables.steps) if dialect.tables else ""
-        what = f"no table is called as '{steps}' says; there are {named_tables(file)}"
-        raise ReadError(what, where=path)
     pieces = []
     labels: dict[str, str] = {}
     unused: dict[str, None] = {}
     own: dict[str, str] = {}
     scales: dict[str, tuple[float, float]] = {}
     notes = dict(file.notes)
-    several = dialect.tables is not None or len(tables) > 1
+    several = len(tables) > 1
     for number, table in enumerate(tables, start=1):
         signals, not_used = _resolved(path, table, dialect)
         clocks = _one_clock(path, table, signals) if dialect.time.rate_pattern else None
@@ -68,9 +61,6 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
         unused |= dict.fromkeys(not_used)
         own |= symbols(signals, dialect)
         scales |= scales_of(signals)
-    if dialect.tables is not None:
-        names = ", ".join(table.name for table in tables[:_NAMED])
-        notes["steps_are"] = f"{names}, ..." if len(tables) > _NAMED else names
     if dialect.marks is not None:
         time = pieces[0].columns["time"]
         pieces[0].columns["step"], more = _marked_steps(path, file, time, dialect.marks)
@@ -80,45 +70,20 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
     )
 
 
-def read_table(path: Path, dialect: Dialect, name: str) -> dict[str, np.ndarray]:
-    """Read the available columns of another table of a file, in SI.
-
-    Parameters
-    ----------
-    path, dialect
-        As for `read_columns`.
-    name
-        Name of the table.
-
-    Raises
-    ------
-    ReadError
-        If the table does not exist.
-    """
-    tables = [table for table in _opened(path, dialect).tables if table.name == name]
-    if not tables:
-        raise ReadError(f"there is no table '{shown(name)}' to read a zero from", where=path)
-    columns = tuple(column.model_copy(update={"optional": True}) for column in dialect.column)
-    signals, _ = _resolved(path, tables[0], dialect.model_copy(update={"column": columns}))
-    return {s.quantity: _scaled(path, s, tables[0].columns[s.place].values) for s in signals}
-
-
 def _opened(path: Path, dialect: Dialect) -> RawFile:
     try:
         return open_as(path, dialect)
     except (ReadError, ImportError):
         raise
     except Exception as error:  # each of these libraries reports damage differently
-        form = dialect.text.container or dialect.format
-        what = f"this {form} file cannot be read: {shown(str(error), 200)}"
+        what = f"this {dialect.format} file cannot be read: {shown(str(error), 200)}"
         raise ReadError(what, where=path) from error
 
 
 def _resolved(path: Path, table: RawTable, dialect: Dialect) -> tuple[list[ReadColumn], list[str]]:
-    where = f"{path}: table '{shown(table.name, 40)}'" if dialect.tables else str(path)
     named = [name_and_unit(column) for column in table.columns]
     names, units = [name for name, _ in named], [unit for _, unit in named]
-    return resolve(where, names, units, len(names), dialect)
+    return resolve(str(path), names, units, len(names), dialect)
 
 
 def _one_clock(path: Path, table: RawTable, signals: list[ReadColumn]) -> OneClock | None:

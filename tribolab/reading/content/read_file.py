@@ -60,7 +60,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
             f"{dialect.format}"
         )
     dialect = as_written(file, dialect)
-    if dialect.format != "text" or dialect.text.container:
+    if dialect.format != "text":
         # imported late for a quick start
         from tribolab.reading.content.containers import read_columns
 

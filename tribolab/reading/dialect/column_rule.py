@@ -57,8 +57,7 @@ class Column(Strict):
     zero: ZeroText | None = Field(
         None,
         description="interval of the zero to subtract: 'first 200 samples', 'first 2 s', "
-        "'1.5 s to 3 s', 'file blank.csv' (a run without contact in the same folder), 'table "
-        "zero' (a table without contact), 'table zero to table after' (before and after the run)",
+        "'1.5 s to 3 s', 'file blank.csv' (a run without contact in the same folder)",
     )
     rectified: bool | None = Field(
         None, description="friction only: recorded without sign (true) or with it (false)"

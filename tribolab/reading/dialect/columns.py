@@ -42,17 +42,6 @@ def resolve(
 ) -> tuple[list[ReadColumn], list[str]]:
     """Find the columns of a dialect in a table.
 
-    Parameters
-    ----------
-    where
-        The file's name, for messages.
-    names, units
-        Names and units in the header; empty without a header.
-    width
-        Number of cells in the first row of numbers.
-    dialect
-        The dialect.
-
     Returns
     -------
     tuple
@@ -103,11 +92,6 @@ def scales_of(signals: Sequence[ReadColumn]) -> dict[str, tuple[float, float]]:
 
 def first_filled(columns: Mapping[str, Sequence[np.ndarray]]) -> dict[str, str]:
     """Choose the first filled one of several columns for a quantity.
-
-    Parameters
-    ----------
-    columns
-        Arrays of each piece by the keys of `ReadColumn`.
 
     Returns
     -------

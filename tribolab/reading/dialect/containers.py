@@ -4,21 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tribolab.core.errors import shown
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.python_reader import PythonReader
 from tribolab.reading.raw.containers.read import read_container
 from tribolab.reading.raw.containers.records import read_records
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
 from tribolab.reading.raw.readers import read_with
-from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name
-
-_NAMED = 8  # most tables named in a message
 
 
 def open_as(path: Path, dialect: Dialect) -> RawFile:
-    """Open a container with the tables that a dialect describes.
+    """Open a container that a dialect describes.
 
     Raises
     ------
@@ -33,25 +29,16 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
     if dialect.binary is not None:
         return read_records(path, dialect.binary.record, dialect.binary.offset)
     if dialect.format != "excel":
-        return read_container(path, dialect.text.container or dialect.format)
+        return read_container(path, dialect.format)
     # imported late for a quick start
-    from tribolab.reading.raw.containers.workbook import read_sheet, read_sheets
+    from tribolab.reading.raw.containers.workbook import read_sheet
 
     below = header.units == "row"
-    if dialect.tables is None:
-        return read_sheet(path, header.sheet, header.line or 1, header.skip, units_below=below)
-    wanted = [column.name for column in dialect.column if column.name]
-    return read_sheets(path, wanted, header.line or 1, units_below=below)
+    return read_sheet(path, header.sheet, header.line or 1, header.skip, units_below=below)
 
 
 def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
-    """Return the tables of a dialect: the steps of a run, or the whole file as one table.
-
-    Tables in JSON are of one kind, and are steps.
-    """
-    if dialect.tables is not None:
-        pattern = guarded(dialect.tables.steps)
-        return [table for table in file.tables if pattern.search(table.name)]
+    """Return the whole file as one table; tables in JSON are of one kind, and are steps."""
     if len(file.tables) > 1 and file.container == "json":
         return list(file.tables)
     if dialect.format != "tdms":
@@ -61,11 +48,6 @@ def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
     whole = file._replace(tables=tuple(read)).as_one_table()
     # names of channels exclude their group
     return [whole._replace(columns=tuple(c for table in read for c in table.columns))]
-
-
-def named_tables(file: RawFile) -> str:
-    """Return the names of the first tables of a file, for a message."""
-    return ", ".join(shown(table.name, 30) for table in file.tables[:_NAMED]) or "none"
 
 
 def name_and_unit(column: RawColumn) -> tuple[str, str | None]:

@@ -9,8 +9,6 @@ from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
 from tribolab.reading.dialect.checked_text import BinaryField, Encoding, Pattern, Strict
 
-TEXT_CONTAINERS = ("json", "declared records")  # formats that begin as text and name their columns
-
 
 class Recognise(Strict):
     """Rules to recognise a file of this instrument; all must match. No rules: never recognised."""
@@ -43,11 +41,6 @@ class Text(Strict):
         "", description="thousands separator, like the comma of '1,234.5'"
     )
     missing: tuple[str, ...] = Field((), description="marks of missing values, error codes")
-    arrangement: Literal["below names", "json", "declared records"] = Field(
-        "below names",
-        description="'json', or 'declared records' (binary numbers after a text header); default: "
-        "rows below a line of names",
-    )
     end: Pattern | None = Field(None, description="the first line matching this ends the table")
     skip_lines: Pattern | None = Field(
         None, description="lines below the header to ignore: comments, marks"
@@ -62,11 +55,6 @@ class Text(Strict):
         if self.thousands == self.decimal:
             raise ValueError(f"decimal mark and mark of thousands are both '{self.decimal}'")
         return self
-
-    @property
-    def container(self) -> str:
-        """Format with named columns if the text has one; "" for lines of text."""
-        return self.arrangement if self.arrangement in TEXT_CONTAINERS else ""
 
     @property
     def is_quoted(self) -> bool:
@@ -92,9 +80,6 @@ class Header(Strict):
         1, description="for units = 'row': number of the line below the names, from 1"
     )
     repeats: bool = Field(False, description="each step begins with a header")
-    only: Pattern | None = Field(
-        None, description="profiles only: pattern for the titles of the tables to read"
-    )
     step: Pattern | None = Field(
         None, description="group 1 is the step number in the text above its header"
     )
@@ -111,20 +96,12 @@ class Header(Strict):
 
 
 class Rows(Strict):
-    """Meaning of the rows, and how many may be left out."""
+    """Meaning of the rows."""
 
     are: Literal["samples", "points", "either"] = Field(
         "samples",
         description="'points': each row is a result, the mean at one speed; 'either': only if no "
         "speed is kept over several rows",
-    )
-
-    left_out: float = Field(
-        0.0,
-        ge=0,
-        le=1,
-        description="fraction of the rows that may be left out; if more are, and more than the "
-        "limits of the check `rows_left_out`, the run is suspect or fails",
     )
 
 
@@ -148,16 +125,6 @@ class Marks(Strict):
     time: str = Field(description="name of the time channel, without its unit")
     unit: str | None = None
     labels: Pattern | None = Field(None, description="properties of the group to use as labels")
-
-
-class Tables(Strict):
-    """Several tables with the same columns in one file: sheets, groups, structure elements."""
-
-    steps: Pattern = Field(
-        description="tables with matching names are steps of the run, in file order: a sheet, the "
-        "path of an HDF5 group, a TDMS group, a structure element as in MATLAB "
-        "('exp.stage(2)'); column names do not include it, settings of a step are its text"
-    )
 
 
 class Binary(Strict):

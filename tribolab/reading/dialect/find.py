@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import functools
-import multiprocessing
 import tomllib
-import warnings
 from pathlib import Path
 from typing import Any
 
@@ -37,13 +35,6 @@ __all__ = [
 
 Instrument = str | Path | Dialect  # a name, a TOML file, or a dialect
 _SHOWN = 5  # most errors of a dialect reported at once
-_LEAVING = {  # deprecated keys by table; the next release will not accept them
-    "tables": ("steps",),
-    "text": ("arrangement",),
-    "derived": ("way",),
-    "header": ("only",),
-    "rows": ("left_out",),
-}
 
 
 class UnknownFileError(ReadError):
@@ -189,10 +180,6 @@ def every_dialect() -> list[Dialect]:
 def json_schema() -> Json:
     """Return the JSON Schema of a dialect file, for editors and other programs."""
     schema = Dialect.model_json_schema()
-    for table, keys in _LEAVING.items():
-        for key in keys:
-            del schema["$defs"][table.capitalize()]["properties"][key]
-    del schema["$defs"]["Tables"], schema["properties"]["tables"]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -212,31 +199,13 @@ def _parse(path: Path) -> Dialect:
     except (OSError, ValueError) as error:
         raise ConfigError(f"{path}: the dialect cannot be read: {brief(error)}") from error
     try:
-        dialect = Dialect.model_validate(content)
-        _warn_of_keys(path, content)
-        return dialect
+        return Dialect.model_validate(content)
     except ValidationError as error:
         said = [_explain(fault) for fault in error.errors()]
         more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
         raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
     except TribolabError as error:  # error of a unit or number, which names its key
         raise ConfigError(error, where=path) from error
-
-
-def _warn_of_keys(path: Path, content: Json) -> None:
-    """Warn of deprecated keys; once, and not in every worker."""
-    if multiprocessing.parent_process() is not None:
-        return
-    for table, keys in _LEAVING.items():
-        said = content.get(table, [])
-        for key in keys:
-            if any(key in one for one in (said if isinstance(said, list) else [said])):
-                warnings.warn(
-                    f"{path}: {table}.{key} will be removed from dialects in the next release; "
-                    "read such files without a dialect",
-                    FutureWarning,
-                    stacklevel=2,
-                )
 
 
 def _explain(problem: Any) -> str:

@@ -1,8 +1,4 @@
-"""Formulas for derived columns: parsed by a grammar, never evaluated as code.
-
-    formula = term { ("+" | "-") term }
-    term    = factor { ("*" | "/") factor }
-    factor  = number | name | "'" number unit "'" | "-" factor | "(" formula ")"
+"""Formulas for derived columns: ``+ - * / ( )`` of numbers and names, never evaluated as code.
 
 Names are those of columns and values, and ``pi``; a number with a unit is in quotes. Every part has
 a dimension, and sums of different dimensions are refused.
@@ -10,8 +6,10 @@ a dimension, and sums of different dimensions are refused.
 
 from __future__ import annotations
 
+import ast
 import functools
 import re
+import warnings
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -22,12 +20,8 @@ from tribolab.core.errors import UnitError, nearest, shown
 from tribolab.units.conversion import base_unit, registry, to_si
 
 _MAX_FORMULA = 300  # characters
-_DEEPEST = 20
 _QUANTITY = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(?P<unit>.*?)\s*$")
-_TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)"
-    r"|(?P<quoted>'[^']*')|(?P<sign>[-+*/()]))"
-)
+_SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 
 Dimension = tuple[tuple[str, float], ...]  # base dimensions and their powers, in order of name
 
@@ -89,11 +83,14 @@ def parse_formula(text: str) -> Node:
     """
     if len(text) > _MAX_FORMULA:
         raise UnitError(f"formula '{shown(text)}' is longer than {_MAX_FORMULA} letters")
-    reader = _Reader(text)
-    node = reader.sum_of_terms(0)
-    if reader.kind:
-        raise reader.wrong("an operator or the end")
-    return node
+    text = text.strip()
+    try:
+        with warnings.catch_warnings():  # "1if" is only deprecated
+            warnings.simplefilter("ignore")
+            tree = ast.parse(text, mode="eval")
+    except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
+        raise _wrong(text, str(error)) from error
+    return _node(tree.body, text)
 
 
 def names_in(node: Node) -> set[str]:
@@ -190,74 +187,32 @@ def _written(dimension: Dimension) -> str:
     return (product(above) or "1") + (f"/{product(below)}" if below else "") if dimension else "1"
 
 
-class _Reader:
-    """Tokens of a formula, one after another."""
-
-    def __init__(self, text: str) -> None:
-        self.text, self.place = text, 0
-        self.kind, self.word = "", ""
-        self.next()
-
-    def next(self) -> str:
-        """Advance to the next token and return the one before."""
-        passed = self.word
-        match = _TOKEN.match(self.text, self.place)
-        if match is None:
-            if rest := self.text[self.place :].strip():
-                self.word = rest
-                raise self.wrong("a name, a number or one of + - * / ( )")
-            self.kind, self.word = "", ""
-        else:
-            self.place = match.end()
-            self.kind, self.word = str(match.lastgroup), match[match.lastgroup or 0]
-        return passed
-
-    def wrong(self, wanted: str) -> UnitError:
-        """Return the error for an unexpected token."""
-        there = f"'{shown(self.word, 20)}'" if self.word else "its end"
-        return UnitError(
-            f"formula '{shown(self.text)}': {there} is where {wanted} should be; put a number "
-            "with a unit in quotes, e.g. \"rotation_speed * '25 mm'\""
-        )
-
-    def sum_of_terms(self, depth: int) -> Node:
-        """Read a formula up to its end or a closing bracket."""
-        if depth > _DEEPEST:
-            raise UnitError(f"formula '{shown(self.text)}' is nested deeper than {_DEEPEST}")
-        node = self.product(depth)
-        while self.word in ("+", "-"):
-            node = Node(self.next(), parts=(node, self.product(depth)))
-        return node
-
-    def product(self, depth: int) -> Node:
-        """Read factors that are multiplied and divided."""
-        node = self.factor(depth)
-        while self.word in ("*", "/"):
-            node = Node(self.next(), parts=(node, self.factor(depth)))
-        return node
-
-    def factor(self, depth: int) -> Node:
-        """Read a number, a name, a quantity or an expression in brackets."""
-        if depth > _DEEPEST:
-            raise UnitError(f"formula '{shown(self.text)}' is nested deeper than {_DEEPEST}")
-        if self.kind == "number":
-            return Node("number", operand=Operand(float(self.next()), ()))
-        if self.kind == "quoted":
-            return Node("number", operand=_quantity(self.next()[1:-1], self.text))
-        if self.kind == "name":
-            name = self.next()
+def _node(tree: ast.expr, text: str) -> Node:
+    """Return a part of a formula; raise for anything else that Python may write."""
+    match tree:
+        case ast.BinOp(op=op) if type(op) in _SIGNS:
+            sides = (_node(tree.left, text), _node(tree.right, text))
+            return Node(_SIGNS[type(op)], parts=sides)
+        case ast.UnaryOp(op=ast.USub()):
+            return Node("-", parts=(_node(tree.operand, text),))
+        case ast.Name(id=name):
             return Node("name", name, Operand(np.pi, ()) if name == "pi" else None)
-        if self.word == "-":
-            self.next()
-            return Node("-", parts=(self.factor(depth + 1),))
-        if self.word == "(":
-            self.next()
-            node = self.sum_of_terms(depth + 1)
-            if self.word != ")":
-                raise self.wrong("')'")
-            self.next()
-            return node
-        raise self.wrong("a name, a number or '('")
+        case ast.Constant(value=str() as said) if _written_as(tree, text) == f"'{said}'":
+            return Node("number", operand=_quantity(said, text))
+        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+            return Node("number", operand=Operand(float(number), ()))
+    raise _wrong(text, f"'{shown(_written_as(tree, text), 20)}' is none of them")
+
+
+def _written_as(tree: ast.expr, text: str) -> str:
+    return ast.get_source_segment(text, tree) or ""
+
+
+def _wrong(text: str, why: str) -> UnitError:
+    return UnitError(
+        f"formula '{shown(text)}' has to be names and numbers with + - * / ( ): {shown(why, 60)}; "
+        "put a number with a unit in quotes, e.g. \"rotation_speed * '25 mm'\""
+    )
 
 
 def _quantity(text: str, formula: str) -> Operand:

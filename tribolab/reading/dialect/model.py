@@ -20,7 +20,6 @@ from tribolab.reading.dialect.file_layout import (
     Pair,
     Recognise,
     Rows,
-    Tables,
     Text,
 )
 from tribolab.reading.dialect.formula import names_in, parse_formula
@@ -45,11 +44,6 @@ class Derived(Strict):
         description="omitted for files that lack an input of the formula; of several such "
         "formulas for one quantity, the first that can be computed is used",
     )
-    way: Literal["both", "out"] = Field(
-        "both",
-        description="'out': zero on return strokes (found from the position), e.g. the normal "
-        "force of a sled that is lifted on its way back",
-    )
     beside: tuple[str, ...] = Field(
         (), description="column that the file must also contain for the formula to be used"
     )
@@ -64,11 +58,21 @@ class Dialect(Strict):
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     title: str = Field(description="name of the instrument, for people")
     format: Literal[
-        "text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "npz", "binary"
+        "text",
+        "mat",
+        "tdms",
+        "hdf5",
+        "parquet",
+        "feather",
+        "excel",
+        "npz",
+        "json",
+        "declared records",
+        "binary",
     ] = Field(
         "text",
-        description="'hdf5' includes MATLAB 7.3; 'npz' is a NumPy archive; files of any format may "
-        "be compressed (gz, zip)",
+        description="'hdf5' includes MATLAB 7.3; 'npz' is a NumPy archive; 'declared records' are "
+        "binary numbers after a text header; files of any format may be compressed (gz, zip)",
     )
     from_file: bool = Field(
         True,
@@ -96,7 +100,6 @@ class Dialect(Strict):
     )
     pair: Pair | None = None
     marks: Marks | None = None
-    tables: Tables | None = None
     binary: Binary | None = None
     column: tuple[Column, ...] = Field(min_length=1)
     value: tuple[Value, ...] = ()
@@ -129,14 +132,10 @@ class Dialect(Strict):
             positive(self.moving_mass, "kg", "moving_mass")
         if (self.format == "binary") != (self.binary is not None):
             raise ValueError("format = 'binary' and [binary] belong together")
-        if self.tables is not None and self.format in ("text", "binary", "parquet", "feather"):
-            raise ValueError(
-                f"[tables] is for files that hold several tables by name, not {self.format}"
-            )
         without_header = self.header.line is None and self.header.pattern is None
         if without_header and self.text.delimiter == "any":
             raise ValueError("text.delimiter = 'any' needs header.line or header.pattern")
-        if self.format == "text" and without_header and not self.text.container:
+        if self.format == "text" and without_header:
             for column in self.column:
                 if column.position is None or column.unit is None:
                     raise ValueError(

@@ -18,17 +18,6 @@ def check_pitch(
 ) -> None:
     """Raise if a pitch cannot define positions.
 
-    Parameters
-    ----------
-    pitch
-        Distance of neighbouring points.
-    pitch_value, length_value
-        Names of the values with the pitch, or the length of the whole profile.
-    values
-        The dialect's values.
-    columns
-        Quantities of its columns.
-
     Raises
     ------
     ValueError

@@ -50,13 +50,6 @@ def recognised_by(head: bytes) -> list[Dialect]:
 def with_columns(dialect: PythonReader, path: Path) -> PythonReader:
     """Return a reader's dialect with the columns found in a file.
 
-    Parameters
-    ----------
-    dialect
-        From `python_reader`.
-    path
-        The file.
-
     Raises
     ------
     ReadError

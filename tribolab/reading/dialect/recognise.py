@@ -23,15 +23,7 @@ _LINKED = 0.999  # correlation of one signal in volts and in its unit
 
 
 def mismatch(file: File, dialect: Dialect) -> str | None:
-    """Return why a file cannot be from this instrument; None if it can.
-
-    Parameters
-    ----------
-    file
-        The file, from `tribolab.reading.text.first_bytes.peek`.
-    dialect
-        The dialect in question.
-    """
+    """Return why a file cannot be from this instrument; None if it can."""
     rules = dialect.recognise
     if not fits_format(file.format, dialect.format):
         return f"it is {file.format}, not {dialect.format}"
@@ -39,17 +31,17 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         return "the dialect has no rules to recognise it by"
     if rules.file_name and not guarded(rules.file_name).search(file.path.name):
         return "its name does not fit"
-    if dialect.format == "mat" and dialect.tables is None:
+    if dialect.format == "mat":
         # imported late for a quick start
         from tribolab.reading.raw.containers.mat import variable_names
 
         return _names_missing(rules, variable_names(file.path))
-    if dialect.format == "tdms" and dialect.tables is None:
+    if dialect.format == "tdms":
         # imported late for a quick start
         from tribolab.reading.raw.containers.tdms import channel_names
 
         return _names_missing(rules, channel_names(file.path))
-    if dialect.format != "text" or dialect.text.container:
+    if dialect.format != "text":
         # imported late for a quick start
         from tribolab.reading.dialect.containers import column_names
 

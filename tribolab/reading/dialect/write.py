@@ -36,13 +36,6 @@ class Remarks(NamedTuple):
 def dialect_toml(dialect: Dialect, remarks: Remarks | None = None) -> str:
     """Return a dialect as TOML, with every key that was set.
 
-    Parameters
-    ----------
-    dialect
-        The dialect.
-    remarks
-        Comments.
-
     Examples
     --------
     >>> from tribolab.reading.dialect.find import load_dialect

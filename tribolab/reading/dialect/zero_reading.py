@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -18,7 +17,6 @@ from tribolab.units.quantities import quantity
 _SAMPLES = re.compile(r"^\s*first\s+(\d+)\s+samples?\s*$")
 _FIRST = re.compile(r"^\s*first\s+(\S.*?)\s*$")
 _BETWEEN = re.compile(r"^\s*(\S.*?)\s+to\s+(\S.*?)\s*$")
-_TABLES = re.compile(r"^\s*table\s+(\S.*?)(?:\s+to\s+table\s+(\S.*?))?\s*$")
 _BLANK = re.compile(r"^\s*file\s+(\S.*?)\s*$")
 _MIN_SAMPLES = 10  # samples
 _RUBS = 0.12  # share of the highest friction above which there is contact
@@ -27,16 +25,12 @@ _BATCHES = 16  # batches whose scatter gives the error of the zero
 
 
 class ZeroRule(NamedTuple):
-    """Source of a zero: first samples, an interval [s], a file, or tables of the file.
-
-    Of two tables the first was recorded before the run and the second after it.
-    """
+    """Source of a zero: first samples, an interval [s], or a file."""
 
     samples: int = 0
     start: float = -np.inf
     stop: float = np.inf
     file: str = ""
-    tables: tuple[str, ...] = ()
 
 
 def parse_zero(text: str) -> ZeroRule:
@@ -46,8 +40,7 @@ def parse_zero(text: str) -> ZeroRule:
     ----------
     text
         ``"first 200 samples"``, ``"first 2 s"``, ``"1.5 s to 3 s"`` (time from the first sample) or
-        ``"file blank.csv"`` (in the folder of the run's file), ``"table zero"`` (of the run's
-        file), ``"table zero to table after"`` (before and after the run).
+        ``"file blank.csv"`` (in the folder of the run's file).
 
     Raises
     ------
@@ -60,22 +53,18 @@ def parse_zero(text: str) -> ZeroRule:
     (200, 3.0)
     >>> parse_zero("file blank.csv").file
     'blank.csv'
-    >>> parse_zero("table zero before to table zero after").tables
-    ('zero before', 'zero after')
     """
     if match := _SAMPLES.match(text):
         return ZeroRule(samples=int(match[1]))
     if match := _BLANK.match(text):
         return ZeroRule(file=match[1])
-    if match := _TABLES.match(text):
-        return ZeroRule(tables=tuple(name for name in match.groups() if name))
     if match := _FIRST.match(text):
         return ZeroRule(stop=to_si(match[1], "s", "zero"))
     if match := _BETWEEN.match(text):
         return ZeroRule(start=to_si(match[1], "s", "zero"), stop=to_si(match[2], "s", "zero"))
     raise UnitError(
         f"zero: '{shown(text)}' does not say where the zero is read; write 'first 200 samples', "
-        "'first 2 s', '1.5 s to 3 s', 'file blank.csv' or 'table zero'"
+        "'first 2 s', '1.5 s to 3 s' or 'file blank.csv'"
     )
 
 
@@ -98,7 +87,7 @@ def take_zeros(
     rules
         Source of each quantity's zero, see `parse_zero`.
     blank
-        Function that returns the columns of a file, or of "table ...", named in a rule.
+        Function that returns the columns of a file named in a rule.
     where
         The run, for messages.
     units
@@ -108,8 +97,7 @@ def take_zeros(
     -------
     dict
         Attributes: ``<quantity>_zero_N``, its standard error from the scatter of 16 batches
-        (``..._zero_sem_N``), and its source, ``zeros_read``. Between two tables it is interpolated
-        linearly, and ``..._zero_uncertainty_N`` includes the change.
+        (``..._zero_sem_N``), and its source, ``zeros_read``.
 
     Raises
     ------
@@ -121,22 +109,11 @@ def take_zeros(
     for name, text in rules.items():
         if name not in columns:
             continue
-        rule = parse_zero(text)
-        sources = [f"table {table}" for table in rule.tables] or [""]
-        read = [
-            _zero_of(name, text, _samples(name, rule, columns, time, blank, where, source), where)
-            for source in sources
-        ]
+        samples = _samples(name, parse_zero(text), columns, time, blank, where)
+        zero, error = _zero_of(name, text, samples, where)
         unit = "1" if name in (units or {}) else quantity(name).unit
         ending = "" if unit == "1" else f"_{unit}"
-        zero = float(np.mean([mean for mean, _ in read]))
-        error = float(np.hypot.reduce([error for _, error in read])) / len(read)
-        columns[name] = lowered(columns[name], read[0][0])
-        if len(read) > 1:  # it drifted between the two tables
-            change = read[1][0] - read[0][0]
-            columns[name] = columns[name] - np.interp(time, [time[0], time[-1]], [0.0, change])
-            own = math.hypot(error, change / math.sqrt(12))
-            attrs[f"{name}_zero_uncertainty{ending}"] = own
+        columns[name] = lowered(columns[name], zero)
         attrs |= {f"{name}_zero{ending}": zero, f"{name}_zero_sem{ending}": error}
         said[name] = text
     if said:
@@ -202,7 +179,7 @@ def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: J
         return {}
     load = columns["normal_force"]
     rule = parse_zero(str(read["friction_force"]))
-    from_start = not rule.file and not rule.tables and rule.start == -np.inf
+    from_start = not rule.file and rule.start == -np.inf
     rows = rule.samples or (int(np.searchsorted(time, rule.stop)) if from_start else 0)
     if motion is None or not 0 < rows < load.size or np.ptp(load[np.isfinite(load)]) > 0:
         return {}
@@ -244,13 +221,12 @@ def _samples(
     time: np.ndarray,
     blank: Callable[[str], Mapping[str, np.ndarray]],
     where: str,
-    table: str,
 ) -> np.ndarray:
     """Return the samples for a zero."""
-    if other := table or rule.file:
-        of_file = blank(other)
+    if rule.file:
+        of_file = blank(rule.file)
         if name not in of_file:
-            raise ReadError(f"{other}: the blank run holds no {name}", where=where)
+            raise ReadError(f"{rule.file}: the blank run holds no {name}", where=where)
         return of_file[name]
     if rule.samples:
         return columns[name][: rule.samples]

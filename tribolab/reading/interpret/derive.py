@@ -115,11 +115,6 @@ def missing_members(
 ) -> tuple[str, ...]:
     """Return the inputs that are missing to derive a quantity; empty if none are.
 
-    Parameters
-    ----------
-    goal, known, facts, without
-        As for `derive`.
-
     Returns
     -------
     tuple of str

@@ -15,11 +15,6 @@ _SPEED = re.compile(r"(?:^|_)\d+(?:\.\d+)?(?P<unit>[mu]?m-s|[mu]ms)(?=_|$)")
 def amounts_of_name(name: str) -> list[Amount]:
     r"""Return the amounts in a file name: the load.
 
-    Parameters
-    ----------
-    name
-        File name with its suffix.
-
     Examples
     --------
     >>> [(a.name, a.number) for a in amounts_of_name("PTFE_3N_b.csv")]

@@ -60,11 +60,6 @@ class Phrase(NamedTuple):
 def phrases(line: str) -> list[Phrase]:
     """Return the numbers with units in a line of text, in order.
 
-    Parameters
-    ----------
-    line
-        One line above the table.
-
     Examples
     --------
     >>> [(said.key, said.number, said.unit) for said in phrases("mean radius 2 cm on a 50 mm disc")]
@@ -117,11 +112,6 @@ def label_of(line: str) -> str:
 
 def weight_on_lever(line: str) -> float:
     """Return the lever ratio that a line states together with a weight; 0 without one.
-
-    Parameters
-    ----------
-    line
-        One line above the table.
 
     Examples
     --------

@@ -59,13 +59,6 @@ class _Fit(NamedTuple):
 def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Proof]:
     """Return the quantities and units of columns, as far as their numbers prove them.
 
-    Parameters
-    ----------
-    candidates
-        The columns.
-    numbers
-        Their numbers (rows, columns) as written.
-
     Returns
     -------
     dict

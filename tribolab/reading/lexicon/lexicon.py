@@ -143,7 +143,7 @@ def text_pattern(name: str) -> re.Pattern[str]:
 def says(name: str, text: str) -> bool:
     """Whether a text holds one of the words or forms that sentences.toml has under a name.
 
-    >>> says("not", "not corrected"), says("not", "note: corrected")
+    >>> says("zero_word", "zero force"), says("zero_word", "zeroed force")
     (True, False)
     """
     return text_pattern(name).search(plain_text(text)) is not None

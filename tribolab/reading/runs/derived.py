@@ -20,7 +20,6 @@ from tribolab.reading.dialect.formula import (
 from tribolab.reading.dialect.model import Derived, Dialect
 from tribolab.reading.dialect.value_rule import Value
 from tribolab.reading.raw.missing_marks import measurable
-from tribolab.reading.runs.return_strokes import has_return_strokes
 from tribolab.units.quantities import QUANTITIES, quantity
 
 _LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: light load, and no load
@@ -76,8 +75,6 @@ def add_derived(
         unit = quantity(rule.quantity).unit
         values = _evaluated(rule, known, unit, where)
         columns[rule.quantity] = measurable(np.broadcast_to(values, rows).astype(float))
-        if rule.way == "out" and "position" in columns:
-            columns[rule.quantity][has_return_strokes(columns["position"])] = 0.0
         known[rule.quantity] = in_base_units(columns[rule.quantity], unit)
         said[rule.quantity] = rule.formula
     if missing:

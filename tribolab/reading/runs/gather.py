@@ -106,7 +106,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     attrs |= free_while_zeroed(columns, time, attrs)
     _check_normal_force(columns, contents[0], where, dialect)
     attrs |= _attributes(contents, dialect, origin)
-    attrs |= row_attributes(rows, contents, mended, dialect) | together
+    attrs |= row_attributes(rows, contents, mended) | together
     if "joined" in joined:
         attrs["clock_joined"] = str(joined["joined"])
     return Signals(time, columns, attrs)
@@ -126,12 +126,7 @@ def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[
 
 
 def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
-    """Return the columns of a blank run, from another file or a table, with computed quantities."""
-    if dialect.tables is not None and name.startswith("table "):
-        # imported late for a quick start
-        from tribolab.reading.content.containers import read_table
-
-        return read_table(peek(run).path, dialect, name.removeprefix("table "))
+    """Return the columns of a blank run in another file, with computed quantities."""
     path = run.parent / name
     content = read_unchanged([path], lambda: read_content(path, dialect))
     set_time(content, dialect)

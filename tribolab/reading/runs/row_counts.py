@@ -1,7 +1,7 @@
 """Numbers of rows in a run's files and of rows left out, with reasons, as attributes.
 
-``rows_in_file``; if rows were left out also ``rows_left_out`` and ``rows_left_out_why``, and
-``rows_left_out_meant``, the share that the dialect allows; ``rows_time_interpolated``. For a
+``rows_in_file``; if rows were left out also ``rows_left_out`` and ``rows_left_out_why``;
+``rows_time_interpolated``. For a
 companion log the same with the prefix ``companion_``; ``rows_not_covered`` counts rows of the first
 log outside the range of the companion.
 """
@@ -15,13 +15,12 @@ from typing import Any
 from tribolab.core.untyped import Json
 from tribolab.reading.clocks.clock import Mended
 from tribolab.reading.content.model import Content
-from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.signals import Signals
 
-ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
+ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why")
 
 
-def row_attributes(kept: int, contents: list[Content], mended: Mended, dialect: Dialect) -> Json:
+def row_attributes(kept: int, contents: list[Content], mended: Mended) -> Json:
     """Count the rows of a run's files.
 
     Parameters
@@ -32,8 +31,6 @@ def row_attributes(kept: int, contents: list[Content], mended: Mended, dialect: 
         Contents of the files.
     mended
         Result of the repair of time.
-    dialect
-        The instrument's dialect.
 
     Returns
     -------
@@ -44,8 +41,6 @@ def row_attributes(kept: int, contents: list[Content], mended: Mended, dialect: 
     for content in contents:
         reasons.update(content.left_out)
     attrs = _counted(kept, reasons)
-    if dialect.rows.left_out:
-        attrs["rows_left_out_meant"] = dialect.rows.left_out
     if mended.interpolated:
         attrs["rows_time_interpolated"] = mended.interpolated
     return attrs

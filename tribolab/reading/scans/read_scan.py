@@ -213,7 +213,7 @@ def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
     from tribolab.reading.scans.traces import traces_of
 
     content = read_content(path, dialect)
-    pieces = traces_of(path, content.pieces, dialect)
+    pieces = traces_of(path, content.pieces)
     attrs = {"instrument": dialect.name, **single_values(content, dialect)}
     if content.not_used:
         attrs["columns_not_used"] = "; ".join(content.not_used)

@@ -7,8 +7,6 @@ from pathlib import Path
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.content.model import Piece
-from tribolab.reading.dialect.model import Dialect
-from tribolab.reading.text.bounded_patterns import guarded
 
 _TOLD = 5  # most titles named in a message
 _NUMBERS = re.compile(r"\d+(?:[.,]\d+)*")
@@ -21,7 +19,7 @@ _VERSIONS = re.compile(
 )
 
 
-def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
+def traces_of(path: Path, pieces: list[Piece]) -> list[Piece]:
     """Return the tables of a file that are traces of one scan.
 
     Parameters
@@ -30,8 +28,6 @@ def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
         The file.
     pieces
         Its tables.
-    dialect
-        Its dialect; `only` selects tables.
 
     Returns
     -------
@@ -44,20 +40,12 @@ def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
         If the tables may be versions of one trace, such as raw and filtered, whose mean would be
         meaningless.
     """
-    if dialect.header.only is not None:
-        pattern = guarded(dialect.header.only)
-        meant = [piece for piece in pieces if pattern.search(_title(piece))]
-        if not meant:
-            titles = _titles(pieces)
-            what = f"no table's text matches '{shown(dialect.header.only)}'; there are: {titles}"
-            raise ReadError(what, where=path)
-        return meant
     if len(pieces) > 1 and not _are_traces(pieces):
         raise ReadError(
             f"{len(pieces)} tables of heights are in the file, which are no traces of one scan "
-            f"by what is written above them: {_titles(pieces)}; say which are meant with only = "
-            f"'{shown(_title(pieces[0]) or '...', 30)}' in [header] of a description of it",
+            f"by what is written above them: {_titles(pieces)}",
             where=path,
+            cure="save those that are meant in a file of their own",
         )
     return pieces
 

@@ -39,6 +39,8 @@ _JSON = re.compile(rb'(?:\xef\xbb\xbf)?\s*(?:\{\s*"[^"]*"\s*:|\[\s*[\[{])')
 _COMPATIBLE_FORMATS = {
     ("netcdf", "hdf5"),
     ("text", "binary"),
+    ("text", "json"),
+    ("text", "declared records"),
 }  # other formats that a file may match
 _FOREIGN = {
     b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",

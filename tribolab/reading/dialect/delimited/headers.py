@@ -89,15 +89,6 @@ def parted_as_numbers(
 ) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
     """Return names and units of a header in which blanks also separate words of one name.
 
-    Parameters
-    ----------
-    names, units
-        Names and units as separated by the delimiter.
-    width
-        Number of columns in a row of numbers.
-    dialect
-        The dialect: names may be wrong only if it identifies columns by position.
-
     Notes
     -----
     Units in brackets belong to the names before them. If the numbers still differ, there are no

@@ -16,13 +16,6 @@ _NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTI
 def rows_outside(raw: RawText, delimiter: str) -> int:
     """Count the rows of numbers before, between and below the tables of a file.
 
-    Parameters
-    ----------
-    raw
-        The file and its tables, from `tribolab.reading.dialect.delimited.tables.find_tables`.
-    delimiter
-        Delimiter of the dialect.
-
     Notes
     -----
     A row has at least two cells, and between half and twice as many as the tables have columns; a
@@ -44,13 +37,6 @@ def rows_outside(raw: RawText, delimiter: str) -> int:
 
 def foot_of(raw: RawText, dialect: Dialect) -> str:
     """Return the text below the last table of a file; only the end of a long text.
-
-    Parameters
-    ----------
-    raw
-        As for `rows_outside`.
-    dialect
-        The encoding of the file.
 
     Raises
     ------

@@ -109,53 +109,6 @@ def read_sheet(
     return RawFile(path, "excel", (table._replace(name=""),), (*table.settings, *others))
 
 
-def read_sheets(
-    path: Path, wanted: Sequence[str], line: int, *, units_below: bool = False
-) -> RawFile:
-    """Read the sheets of a workbook with the same table; other sheets are common settings.
-
-    Parameters
-    ----------
-    path
-        The workbook.
-    wanted
-        Names of columns without units; a sheet without any of them is not a table.
-    line, units_below
-        As for `read_sheet`; names in another row of a sheet are also found.
-
-    Raises
-    ------
-    ReadError
-        If the workbook cannot be read.
-    """
-    tables: list[RawTable] = []
-    others: list[Setting] = []
-    for sheet, rows in sheets_of(path).items():
-        place = _row_of_names(rows, set(wanted), line)
-        if place is not None:
-            table = _table_below(path, sheet, rows, place, units_below=units_below)
-            columns = tuple(c for c in table.columns if c.label and c.values.dtype.kind != "U")
-            title = Setting("", sheet, Place(sheet), "title")
-            settings = (title, *table.settings)
-            tables.append(table._replace(columns=columns, settings=settings))
-        elif len(rows) <= _MAX_ROWS:
-            others += _settings_above(rows)
-    return RawFile(path, "excel", tuple(tables), tuple(others))
-
-
-def _row_of_names(rows: Cells, wanted: set[str], line: int) -> int | None:
-    """Return the row, from 1, with most of the wanted names; None if no row has any."""
-
-    def count(row: Sequence[object]) -> int:
-        texts = (cell.strip() for cell in row if isinstance(cell, str))
-        return len(wanted & {_UNIT_BEHIND.sub("", text) for text in texts})
-
-    places = [line - 1, *range(min(len(rows), _ABOVE))]
-    counts = {place: count(rows[place]) for place in places if place < len(rows) - 1}
-    best = max(counts, key=lambda place: counts[place], default=0)
-    return best + 1 if counts.get(best, 0) >= min(2, len(wanted)) else None
-
-
 def _table_below(
     path: Path, sheet: str, rows: Cells, line: int, skip: int = 0, *, units_below: bool = False
 ) -> RawTable:

@@ -26,15 +26,6 @@ def by_behaviour(
 ) -> tuple[Kind, list[DraftColumn], list[str]]:
     """Recognise a map, a profile or a run by the numbers of the columns.
 
-    Parameters
-    ----------
-    columns
-        The columns, without names.
-    numbers
-        Their numbers (rows, columns) as written.
-    units
-        Of positions and of heights, as the text before the table states them; "" if it does not.
-
     Notes
     -----
     Three columns whose first two fill a grid are a map. Two columns, the first even and rising, are

@@ -24,15 +24,7 @@ OnRepeat = Literal["", "drop", "interpolate"]
 
 
 def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
-    """Sum a time column that contains intervals by name and numbers; return whether it does.
-
-    Parameters
-    ----------
-    columns
-        The columns.
-    numbers
-        Their numbers (rows, columns); changed in place.
-    """
+    """Sum a time column that contains intervals by name and numbers; return whether it does."""
     column = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)
     if column is None or normalise_label(split_name(column.label)[0]) not in plain_words(
         "interval"

@@ -56,13 +56,7 @@ def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
 
 
 def force_or_ratio(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Make a guess of 'Ff/N' where no other name has its unit behind a stroke, as 't/s' would.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    """
+    """Make a guess of 'Ff/N' where no other name has its unit behind a stroke, as 't/s' would."""
     if any(_has_unit_behind_stroke(column.label) for column in columns):
         return list(columns)
     return [

@@ -32,11 +32,6 @@ _LIKE_A_DATE = re.compile(r"\d:\d|^\s*\d{4}-?\d\d")
 def find_form(texts: Sequence[str]) -> tuple[str, str]:
     """Find the form of the dates and times in a column.
 
-    Parameters
-    ----------
-    texts
-        Its cells.
-
     Returns
     -------
     tuple

@@ -41,13 +41,6 @@ _NOT_PROPOSED = -1000.0
 def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
     """Give each quantity to at most one column, as the evidence of all rules favours.
 
-    Parameters
-    ----------
-    facts
-        What is known of the columns.
-    rules
-        Generators of evidence; their order does not matter.
-
     Returns
     -------
     list of DraftColumn

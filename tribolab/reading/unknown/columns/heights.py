@@ -79,17 +79,7 @@ def side_by_side_profiles(columns: list[DraftColumn]) -> list[DraftColumn] | Non
 
 
 def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftColumn:
-    """Take a column without a known name for heights: what a pitch before it is of.
-
-    Parameters
-    ----------
-    column
-        The column.
-    stated
-        Whether the text before the table states the unit of heights.
-    unit
-        Possible units, if none is stated.
-    """
+    """Take a column without a known name for heights: what a pitch before it is of."""
     name, own, say = bare_name(column)
     if say and own is not None and column.file_unit is None:
         column = column._replace(unit=own)  # "Hauteurs en µm"

@@ -44,19 +44,7 @@ def decide_by_name(
     *,
     placed: bool = False,
 ) -> tuple[Kind, list[DraftColumn]]:
-    """Decide the columns of a table by their names, and with them what kind of file it is.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`: its text explains names.
-    columns, numbers
-        The columns, and their numbers (rows, columns) as written.
-    proofs
-        From `tribolab.reading.unknown.columns.proven.proven`.
-    placed
-        Whether the text states the distance of a profile's points.
-    """
+    """Decide the columns of a table by their names, and with them what kind of file it is."""
     bare = [bare_name(column) for column in columns]
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]

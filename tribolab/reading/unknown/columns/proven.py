@@ -32,15 +32,7 @@ _NAMED = ("mass", "turns", "distance", "torque")
 
 
 def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Proof]:
-    """Return what rules of physics prove of columns, by their place from 0.
-
-    Parameters
-    ----------
-    columns
-        The columns by their labels.
-    numbers
-        Their numbers (rows, columns) as written; NaN for a column of text.
-    """
+    """Return what rules of physics prove of columns, by their place from 0."""
     bare = [bare_name(column) for column in columns]
     if len(columns) > _MAX_COLUMNS or all(unit is not None for _, unit, _ in bare):
         return {}  # nothing is left to be proven
@@ -64,13 +56,6 @@ def add_unit_of_load(
     """Return forces without units in the unit of the stated load, if a load cell reads it.
 
     File: Fx, Fy and Fz = -20.3 of "PAO4+OA-10_20N_100mms" (liampond/EgbertsTribometer).
-
-    Parameters
-    ----------
-    columns, numbers
-        As for `proven`.
-    load
-        What the file or its name states of the load.
     """
     forces = {place: _force_of(column) for place, column in enumerate(columns)}
     forces = {place: force for place, force in forces.items() if force}
@@ -93,13 +78,6 @@ def add_unit_of_stroke(
     """Return positions without units in the unit in which they span the stated stroke.
 
     File: "Track length [mm]: 5" above an x-Position from 0 to 5602 (liampond/EgbertsTribometer).
-
-    Parameters
-    ----------
-    columns, numbers
-        As for `proven`.
-    stroke
-        Length of the strokes as stated by the file.
     """
     if stroke is None or stroke.unit is None:
         return list(columns)
@@ -147,17 +125,7 @@ def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Ca
 def restrict_to_proofs(
     matched: Sequence[list[Match]], proofs: dict[int, Proof], numbers: np.ndarray
 ) -> list[list[Match]]:
-    """Return the possible quantities of names, given those that are proven.
-
-    Parameters
-    ----------
-    matched
-        For each column the possible quantities of its name.
-    proofs
-        From `proven`.
-    numbers
-        The columns' numbers (rows, columns) as written.
-    """
+    """Return the possible quantities of names, given those that are proven."""
     taken: dict[str, int] = {}
     for place in sorted(proofs):
         taken.setdefault(proofs[place].quantity, place)

@@ -60,15 +60,7 @@ def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn | None:
-    """Return the one column that counts turns and parts of them, which is an angle.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    numbers
-        Their numbers (rows, columns) as written: whole ones are counted cycles.
-    """
+    """Return the one column that counts turns and parts of them, which is an angle."""
     fitting = []
     for column in columns:
         name, unit = _name_and_unit(column)

@@ -213,15 +213,6 @@ def unused_force_columns(
     """List columns in units of force that are not used although the text above mentions them.
 
     One of them may have to be subtracted or added.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        As they are understood.
-    used
-        Places of those that a formula uses.
     """
     lines = [line[:_MAX_LINE] for line in layout.text_above()]
     said = []

@@ -18,17 +18,7 @@ _QUOTED = 3
 
 
 def candidate_lines(layout: Layout, follows: Follows, lack: str) -> str:
-    """Quote the lines above the table that may state what a run lacks; "" if none does.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    follows
-        Findings on the file; lines that they depend on are not quoted.
-    lack
-        The quantity that is missing: "track_radius", "normal_force" or "sliding_velocity".
-    """
+    """Quote the lines above the table that may state what a run lacks; "" if none does."""
     lines = [value.text for value in _perhaps(layout, follows, lack)]
     lines = [" ".join(line.split()) for line in lines]
     return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(lines[:_QUOTED]))
@@ -48,17 +38,7 @@ def amount_of(value: Amount | None) -> str:
 def confirmed_value(
     values: Sequence[Amount], agreed: Sequence[tuple[Agreed, str]], what: Agreed
 ) -> Amount | None:
-    """Return the value whose line a person took for the radius, the load or the speed.
-
-    Parameters
-    ----------
-    values
-        From `tribolab.reading.unknown.header.settings.numeric_settings`.
-    agreed
-        What was agreed to: of `tribolab.reading.unknown.model.Understood`.
-    what
-        Which of the three.
-    """
+    """Return the value whose line a person took for the radius, the load or the speed."""
     lines = [line for name, line in agreed if name == what]
     return next((v for v in values if lines and v.text == lines[-1] and v.own_unit), None)
 

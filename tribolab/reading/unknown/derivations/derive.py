@@ -14,7 +14,7 @@ from tribolab.reading.unknown.derivations.candidate_lines import find_stated_loa
 from tribolab.reading.unknown.derivations.known_amounts import KnownRun, find_known
 from tribolab.reading.unknown.derivations.model import SAYS_FRICTION, SAYS_LOAD, Follows, Source
 from tribolab.reading.unknown.derivations.speed import add_speed
-from tribolab.reading.unknown.header.load import lifted_on_return, stated_number
+from tribolab.reading.unknown.header.load import stated_number
 from tribolab.reading.unknown.header.stroke_settings import stated_strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
@@ -59,7 +59,7 @@ def _derived(found: _Same) -> Follows:
         known.given["rotation_speed"] = Given("rotation_speed", "rotation_speed", None)
     result = add_speed(result, layout, understood, known)
     result = _add_friction(result, known, understood)
-    return _add_load(result, layout, understood, known)
+    return _add_load(result, understood, known)
 
 
 def held_quantities(understood: Understood) -> set[str]:
@@ -78,7 +78,7 @@ def _add_friction(result: Follows, known: KnownRun, understood: Understood) -> F
     return result.with_derivation(friction)
 
 
-def _add_load(result: Follows, layout: Layout, understood: Understood, known: KnownRun) -> Follows:
+def _add_load(result: Follows, understood: Understood, known: KnownRun) -> Follows:
     """Add the formula of the load, where nothing measures that on the contacts."""
     names = held_quantities(understood)
     friction = names | {formula.quantity for formula in result.formulas}
@@ -92,10 +92,8 @@ def _add_load(result: Follows, layout: Layout, understood: Understood, known: Kn
     stated = None if understood.load else find_stated_load(known.values, understood)
     wanted = friction & SAYS_FRICTION and not names & SAYS_LOAD
     if set_to is not None and load is not None and wanted:
-        out = stated is not None and "position" in names and lifted_on_return(layout)
         about = f"nothing measures it: {_quoted(set_to)} is taken for all of the run"
-        about += ", except for return strokes, on which it is lifted" if out else ""
-        return result.with_derivation(load, about, "out" if out else "")
+        return result.with_derivation(load, about)
     measured = names & {"normal_force", "normal_stress", "set_normal_force"}
     if stated is not None and (not measured or _is_held(stated, understood)):
         # under which a coefficient stands, or what the measured one was set to

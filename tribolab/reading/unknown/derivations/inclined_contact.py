@@ -15,26 +15,27 @@ from typing import NamedTuple
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, plain_text
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
 _MAX_LINE = 300  # characters of a line that are looked at
-_DEGREES = re.compile(
-    r"(?<![\d.,])(?P<angle>\d{1,2}(?:[.,]\d+)?)\s?(?:°|º|deg(?:rees?)?\b|grad\b|gradi\b|grados\b)(?!\s?[CFK])",
-    re.IGNORECASE,
-)
 _DIAMETERS = ("d", "dia", "diameter", "durchmesser")
-_THREE_PLATES = 45.0  # degrees between axis and contacts of plates and pyramids, Anton Paar BC 12.7
-_COS_OF_FOUR = math.sqrt(2 / 3)  # the centres of four equal balls make a regular tetrahedron
-_SIN_OF_FOUR = math.sqrt(1 / 3)
+_OTHER_ANGLE = re.compile(r"(?<![\d.,])(?!45(?!\d))\d{2}(?:[.,]\d+)?\s?(?:°(?!\s?[CFK])|º|deg)")
+# cosine and sine of the angle between contacts and axis: the centres of four equal balls make a
+# regular tetrahedron; plates and pyramids have 45 degrees (Anton Paar BC 12.7)
+_ANGLES = {
+    "four_ball": (math.sqrt(2 / 3), math.sqrt(1 / 3)),
+    "three_plates": (math.sqrt(1 / 2), math.sqrt(1 / 2)),
+    "inclined": (0.0, 0.0),
+}
 
 
 class Inclined(NamedTuple):
     """Contacts at an angle: where it is said, and the cosine and sine of their angle to the axis.
 
-    Both are 0 where the angle is neither stated nor usual; with `guess` it is to be asked.
+    Both are 0 if the angle is not known; with `guess` it is to be asked.
     """
 
     text: str
@@ -43,57 +44,30 @@ class Inclined(NamedTuple):
     guess: str = ""
 
 
-@functools.cache
-def _pattern(kind: str) -> re.Pattern[str]:
-    """Return a pattern for contacts in normalised words: "ball on 3 plates", "four ball"."""
-    ball, three, on = (part_pattern(f"contact_{name}").pattern for name in ("ball", "three", "on"))
-    plate, cone = (part_pattern(f"contact_{name}").pattern for name in ("plate", "cone"))
-    between = rf"\w{{0,3}} ?(?:{on} )?"
-    named = part_pattern(kind).pattern
-    if kind == "four_ball":  # and no bearing of four balls
-        named = rf"(?:{named})(?!s)(?!\w* (?:bearing|lager|screw))"
-    arranged = {
-        "three_plates": rf"{ball}{between}{three} ?{plate}",
-        "four_ball": rf"{ball}{between}{three} ?{ball}",
-        "inclined": rf"{ball}{between}{cone}|{cone}{between}(?:{three} ?)?{ball}",
-    }
-    return re.compile(rf"(?<!\w)(?:{named}|{arranged[kind]})")
-
-
-def _words(text: str) -> str:
-    parts = re.split(r"[\W_]+", text[:_MAX_LINE])
-    return " ".join(normalise_label(part) for part in parts if part)
-
-
 def find_inclined(layout: Layout) -> Inclined | None:
     """Return the inclined contacts that the text above a table, or the file's name, speaks of."""
     lines = [line.strip()[:_MAX_LINE] for line in layout.text_above()]
-    texts = {text: _words(text) for text in (*lines, layout.file.path.stem)}
-    found = {
-        kind: next((t for t, words in texts.items() if _pattern(kind).search(words)), "")
-        for kind in ("four_ball", "three_plates", "inclined")
-    }
-    if found["four_ball"]:
-        return Inclined(found["four_ball"], _COS_OF_FOUR, _SIN_OF_FOUR)
-    plates = found["three_plates"]
-    text = plates or found["inclined"]
-    if not text:
-        return None
-    angles = part_pattern("contact_angle")
-    lines = [line for line, words in texts.items() if angles.search(words.replace(" ", ""))]
-    degrees = [_DEGREES.search(line) for line in (text, *lines)]
-    angle = next((float(match["angle"].replace(",", ".")) for match in degrees if match), None)
-    angle = _THREE_PLATES if plates and angle is None else angle
-    if angle is None:
-        guess = (
-            f"'{shown(text, 40)}': the load on inclined contacts is the axial force over the "
-            "cosine of their angle, which is not said; the force is read as it stands"
-        )
-        return Inclined(text, 0.0, 0.0, guess)
-    cosine, sine = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    sure = plates and angle == _THREE_PLATES
-    guess = f"'{shown(text, 40)}': the load on the contacts is the axial force / {cosine:.4g}"
-    return Inclined(text, cosine, sine, "" if sure else guess)
+    texts = {text: plain_text(text) for text in (*lines, layout.file.path.stem)}
+    for kind, (cosine, sine) in _ANGLES.items():
+        text = next((t for t, words in texts.items() if _pattern(kind).search(words)), "")
+        if text and cosine and not (kind == "three_plates" and _OTHER_ANGLE.search(text)):
+            return Inclined(text, cosine, sine)
+        if text:
+            guess = (
+                f"'{shown(text, 40)}': the load on inclined contacts is the axial force over the "
+                "cosine of their angle; the force is read as it stands"
+            )
+            return Inclined(text, 0.0, 0.0, guess)
+    return None
+
+
+@functools.cache
+def _pattern(kind: str) -> re.Pattern[str]:
+    """Return a pattern for contacts in plain words: "ball on 3 plates", "four ball"."""
+    named = part_pattern(kind).pattern
+    if kind == "four_ball":  # and no bearing of four balls
+        named = rf"{named}(?!s)(?!\w* (?:bearing|lager|screw))"
+    return re.compile(rf"(?<!\w){named}")
 
 
 def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:

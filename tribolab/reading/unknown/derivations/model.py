@@ -19,16 +19,12 @@ _WIDE_RING = "friction acts at the mean of the inner and the outer radius"
 
 
 class DraftedFormula(NamedTuple):
-    """A quantity that follows: its name, formula, inputs, and the location of its zero.
-
-    With `way` it is so on the way out alone: nothing presses on the way back.
-    """
+    """A quantity that follows: its name, formula, inputs, and the location of its zero."""
 
     quantity: str
     formula: str
     about: str
     zero: str = ""
-    way: str = ""
 
 
 class SpeedBy(NamedTuple):
@@ -64,9 +60,7 @@ class Follows(NamedTuple):
         """Return this with columns that formulas or the speed need."""
         return self._replace(symbols=tuple(dict.fromkeys((*self.symbols, *symbols))))
 
-    def with_derivation(
-        self, derived: Derivation[Source], about: str = "", way: str = ""
-    ) -> Follows:
+    def with_derivation(self, derived: Derivation[Source], about: str = "") -> Follows:
         """Return this with the formula of what follows by a rule, and all that it needs."""
         leaves = derived.leaves
         values = [leaf.source for leaf in leaves if isinstance(leaf.source, Amount)]
@@ -85,7 +79,7 @@ class Follows(NamedTuple):
         zero = zeros[0] if zeros and not stated_zero else ""
         if not about:
             about = "; ".join([str(derived.rule), *(f"'{value.text}'" for value in values)])
-        formula = DraftedFormula(derived.quantity, derived.formula, about, zero, way)
+        formula = DraftedFormula(derived.quantity, derived.formula, about, zero)
         symbols = ((name, c._replace(zero="" if moved else c.zero)) for name, c, moved in columns)
         more = self.with_values(*values).with_symbols(*symbols)
         return more._replace(formulas=(*self.formulas, formula))

@@ -16,17 +16,7 @@ from tribolab.reading.unknown.model import DraftColumn
 def take_stated_missing(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> list[str]:
-    """Replace no-data heights by NaN, and return their text.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        The columns as they are understood.
-    numbers
-        Their numbers (rows, columns) as written; changed in place.
-    """
+    """Replace no-data heights by NaN, and return their text."""
     stated = [
         (v.text, v.number) for v in numeric_settings(layout, bare=True) if v.number == v.number
     ]

@@ -30,17 +30,7 @@ _ANOTHER_SPEED = re.compile(
 
 
 def add_speed(result: Follows, layout: Layout, understood: Understood, known: KnownRun) -> Follows:
-    """Return the quantities that follow, with the sliding speed if no column contains it.
-
-    Parameters
-    ----------
-    result
-        What follows so far.
-    layout, understood
-        What was found out about the file.
-    known
-        What is known of the run.
-    """
+    """Return the quantities that follow, with the sliding speed if no column contains it."""
     agreed = confirmed_value(known.values, understood.agreed, "speed")
     if agreed is not None:
         said = agreed._replace(name="set_speed", unit=agreed.own_unit, to=None, guess="")

@@ -112,17 +112,7 @@ def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...
 def second_is_faster(
     pair: Pair, radii: Sequence[Amount], numbers: np.ndarray, friction: DraftColumn | None
 ) -> bool:
-    """Whether friction is positive where the second surface is the faster one.
-
-    Parameters
-    ----------
-    pair, radii
-        From `find_surface_speeds` and `radii_of_surfaces`.
-    numbers
-        The numbers of all columns (rows, columns) as written.
-    friction
-        The column of a force or a torque.
-    """
+    """Whether friction is positive where the second surface is the faster one."""
     if friction is None:
         return False
     first, second = (np.abs(numbers[:, column.place - 1]) for column in pair.columns)

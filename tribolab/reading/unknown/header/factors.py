@@ -57,17 +57,7 @@ def contacts_in(line: str) -> int:
 def unapplied_height_factors(
     layout: Layout, heights: np.ndarray, columns: Sequence[DraftColumn]
 ) -> list[str]:
-    """List the factors by which heights may still have to be multiplied, or what one step is.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    heights
-        Their numbers as written. Of whole numbers a stated step of the gauge may be the unit.
-    columns
-        As they are understood: what one count is is known if their unit holds it.
-    """
+    """List the factors by which heights may still have to be multiplied, or what one step is."""
     scaled = any(column.used and column.counted and column.unit for column in columns)
     present = heights[np.isfinite(heights)]
     whole = bool(present.size) and bool((present == np.round(present)).all())

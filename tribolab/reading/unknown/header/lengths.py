@@ -23,17 +23,8 @@ def slides_on_rim(layout: Layout) -> bool:
 def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:
     """Return the radius of the track, if just one of a file's amounts is one, or its diameter.
 
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    rim
-        Whether the track is the outside of what turns: its size is the track's.
-
-    Returns
-    -------
-    Amount or None
-        With a `guess` if it is only a radius "R", or the size of what turns.
+    It has a `guess` if it is only a radius "R", or the size of what turns. If the track is the
+    `rim` of what turns, that size is its radius.
     """
     lengths = _lengths(values).of(but=("other_radius",))
     across = _scaled(lengths.of("diameter"), "track_radius", 0.5)
@@ -78,13 +69,7 @@ def find_arm(values: Sequence[Amount]) -> Amount | None:
 
 
 def is_at_arm(column: DraftColumn) -> bool:
-    """Whether a column's name is a force on an arm, which gives a torque.
-
-    Parameters
-    ----------
-    column
-        Of a force.
-    """
+    """Whether a column's name is a force on an arm, which gives a torque."""
     return bool(key_pattern("force_at_arm").search(normalise_label(split_name(column.label)[0])))
 
 

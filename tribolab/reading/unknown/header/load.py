@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
-from tribolab.reading.lexicon.lexicon import plain_text, says, text_pattern
 from tribolab.reading.unknown.header.factors import contacts_in
-from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.units.spellings import WEIGHTS
 
-_MAX_LINE = 300  # characters of a line that are looked at
-_DENIED_WITHIN = 12  # characters before a word
 _SAME_FORCE = 0.01  # relative difference of a weight and of the force of it, both rounded
 
 
@@ -50,23 +46,6 @@ def _are_one(one: Amount, other: Amount) -> bool:
         return False
     sizes = one.si("N"), other.si("N")
     return abs(sizes[0] - sizes[1]) <= _SAME_FORCE * max(sizes)
-
-
-def lifted_on_return(layout: Layout) -> bool:
-    """Whether the text states that a sled is lifted on the return stroke."""
-    lines = (line[:_MAX_LINE] for line in layout.text_above())
-    return any(_says_lifted(line) and says("on_return", line) for line in lines)
-
-
-def _says_lifted(line: str) -> bool:
-    """Whether a line states so without a negation.
-
-    >>> _says_lifted("Sled lifted, cell not tared"), _says_lifted("The sled is not lifted")
-    (True, False)
-    """
-    text = plain_text(line)
-    lifted = text_pattern("lifted").search(text)
-    return lifted is not None and not says("not", text[: lifted.start()][-_DENIED_WITHIN:])
 
 
 def stated_number(value: Amount) -> float:

@@ -49,13 +49,6 @@ def find_profile_length(layout: Layout) -> Amount | None:
 def find_stated(layout: Layout, *, placed: bool) -> list[Amount]:
     """Return what the text before a profile states of it, each under the name that checks know.
 
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    placed
-        Whether heights have positions, with which a stated distance can be compared.
-
     Returns
     -------
     list of Amount

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.core.errors import shown
-from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.phrases import single_number
+from tribolab.reading.interpret.settings import amounts_of
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import (
     alternatives,
@@ -23,16 +24,10 @@ from tribolab.reading.unknown.layout.lvm import interval_above
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-# "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
-_GROUPS = r"[1-9]\d{0,2}(?:[ \u00a0\u202f']\d{3})+"  # 1 000
-_STATES = re.compile(
-    r"(?P<before>\W*(?:(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]+\s*)?)"
-    rf"(?P<number>{_GROUPS}|\d[\d.,]*(?:e[-+]?\d+)?)[\s;]*"
-    r"[\[(]?(?P<unit>(?:1/)?[^\W\d][^\d;\t,\[\]()]*(?:\^?-1)?)?[\])]?[\s;,]*$",
-    re.IGNORECASE,
-)
 _MAX_LINE = 200  # characters of a line that are looked at
-_BRACKET = re.compile(r"[\[(]([^\[\]()]+)[\])]\s*$")
+_MOST = 200  # amounts above the table that are looked at
+_THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:,\d{3})+")
+_LABEL = re.compile(r"\W*(?P<name>[^\W\d][^:=\t;\[(]*)(?:[\[(](?P<unit>[^\[\]()]+)[\])])?")
 _SAMPLE, _PER = alternatives("sample"), alternatives("per")
 _PER_TIME = re.compile(
     rf"(?P<many>[kmKM]?)(?:{_SAMPLE}\.?\s*{_PER}\s*"
@@ -63,10 +58,10 @@ def find_sampling(layout: Layout) -> Sampling | None:
     """Return the stated sample rate, or interval of samples; None if there is none."""
     if (above := interval_above(layout)) is not None:
         return Sampling(*above)
-    lines = layout.text_above(bare=layout.width == 1)
-    stated = [found for line in lines if (found := _of_line(line.rstrip(), layout.decimal))]
+    amounts = amounts_of(layout.text_above(bare=layout.width == 1), _MOST)
+    stated = [found for value in amounts if (found := _stated(value, layout.decimal))]
     said = next((found for found in stated if found.has_unit), None)
-    said = said or _in_amounts(layout) or next(iter(stated), None)
+    said = said or next(iter(stated), None) or _taken_so_often(amounts)
     if said is None or not (fewer := _fewer_rows(layout)):
         return said
     doubt = f"every sample is taken for a row, although the file states '{fewer}'"
@@ -77,15 +72,6 @@ def find_pace(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> Sampling | None:
     """Return the speed of a position that gives the time, such as a crosshead's.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        As they are understood, without a time.
-    numbers
-        Their numbers (rows, columns) as written.
 
     Returns
     -------
@@ -107,11 +93,6 @@ def find_pace(
 
 def sample_rate_unit(text: str) -> str:
     """Return the unit of frequency that a text of samples per time means; "" if it means none.
-
-    Parameters
-    ----------
-    text
-        A unit, or what a file calls a rate.
 
     Examples
     --------
@@ -139,53 +120,35 @@ def _fewer_rows(layout: Layout) -> str:
     return ""
 
 
-def _in_amounts(layout: Layout) -> Sampling | None:
-    """Return a value within a sentence or among other numbers of a line."""
-    concepts = "sampling_interval", "sampling_rate"
-    for value in numeric_settings(layout).of(*concepts, source="preamble"):
-        if value.is_in("Hz") or value.is_in("s"):
-            return Sampling(value.pattern, value.unit or value.own_unit or "")
-        if value.own_unit is None:
-            interval = value.means("sampling_interval")
-            return _without_unit(value.pattern, value.text, interval=interval)
-    taken = part_pattern("taken")  # "Sampling fequency [Hz]" (liampond/EgbertsTribometer)
-    rates = [v for v in numeric_settings(layout) if v.is_in("Hz") and taken.match(v.key)]
-    return Sampling(rates[0].pattern, rates[0].unit or "Hz") if len(rates) == 1 else None
-
-
-def _without_unit(pattern: str, text: str, *, interval: bool) -> Sampling:
-    kind, si_unit = ("interval of samples", "s") if interval else ("sample rate", "Hz")
-    return Sampling(pattern, si_unit, f"'{text}' is the {kind} in {si_unit}", has_unit=False)
-
-
-def _of_line(line: str, decimal: str) -> Sampling | None:
-    """Return what a line of one value states of the samples."""
-    said = _STATES.match(line)
-    if said is None:
+def _stated(value: Amount, decimal: str) -> Sampling | None:
+    """Return what an amount states of the samples."""
+    label = _LABEL.match(value.text)
+    unit = (value.own_unit or (label["unit"] if label else "") or "").rstrip(".")
+    by_key = sample_rate_unit(label["name"]) if label else ""
+    number = re.search(value.pattern, value.text)
+    if number is None or not value.number > 0:
         return None
-    key = said["key"] or ""
-    bracket = _BRACKET.search(key)
-    unit = (said["unit"] or "").strip() or (bracket[1].strip() if bracket else "")
-    bare = _BRACKET.sub("", key)
-    name = normalise_label(bare)
-    digits = rf"({_GROUPS}|[-+\d.,]+(?:[eE][-+]?\d+)?)"
-    pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*{digits}"
-    if not said["before"].strip():  # a number alone is found by the text after it
-        pattern = rf"^\s*{digits}\s*{escaped(unit)}"
-    thousands = ""
-    if decimal == "." and re.fullmatch(r"[1-9]\d{0,2}(?:,\d{3})+", said["number"]):
-        thousands = f"the comma in '{line.strip()}' parts thousands"
-    by_key = sample_rate_unit(bare)
+    thousands = decimal == "." and _THOUSANDS.fullmatch(number[1])
+    doubt = f"the comma in '{value.text}' parts thousands" if thousands else ""
     if rate := sample_rate_unit(unit) or ("" if unit else by_key):
-        return Sampling(pattern, rate, thousands)
-    if not name:
-        return None
+        return Sampling(value.pattern, rate, doubt)
     if apart := _PER_SAMPLE.fullmatch(unit):
-        return Sampling(pattern, apart["time"])
-    unit = unit.rstrip(".")
-    interval = key_pattern("sampling_interval").search(name) is not None
-    if not (interval or by_key or key_pattern("sampling_rate").search(name)):
+        return Sampling(value.pattern, apart["time"])
+    interval = value.means("sampling_interval")
+    if not (interval or value.means("sampling_rate")):
         return None
     if converts(unit, "Hz") or converts(unit, "s"):
-        return Sampling(pattern, unit, thousands)
-    return None if unit else _without_unit(pattern, line.strip(), interval=interval)
+        return Sampling(value.pattern, unit, doubt)
+    kind, si_unit = ("interval of samples", "s") if interval else ("sample rate", "Hz")
+    guess = f"'{value.text}' is the {kind} in {si_unit}"
+    return None if unit else Sampling(value.pattern, si_unit, guess, has_unit=False)
+
+
+def _taken_so_often(amounts: Amounts) -> Sampling | None:
+    """Return the one frequency that begins as that of samples does.
+
+    File: "Sampling fequency [Hz]" (liampond/EgbertsTribometer).
+    """
+    taken = part_pattern("taken")
+    rates = [v for v in amounts if v.is_in("Hz") and taken.match(v.key)]
+    return Sampling(rates[0].pattern, rates[0].unit or "Hz") if len(rates) == 1 else None

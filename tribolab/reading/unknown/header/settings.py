@@ -14,19 +14,9 @@ _MAX_OF_SCAN = 200  # settings of a profilometer, among which the few that count
 
 
 def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
-    """Return the amounts that a file and its name state.
+    """Return the amounts that a file and its name state, a dozen at most.
 
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    bare
-        Whether heights are meant: a table may have no header, and instruments write many settings.
-
-    Returns
-    -------
-    Amounts
-        A dozen at most, of heights more.
+    With `bare` heights are meant: more amounts, and a table may have no header.
     """
     found = {amount.name: amount for amount in amounts_of_name(layout.file.path.name)}
     above = _text_above(layout, bare=bare)
@@ -42,28 +32,12 @@ def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
 
 
 def text_settings(layout: Layout, *, bare: bool = False) -> tuple[tuple[str, str], ...]:
-    """Return settings in words above the table: "Drive: crank" as ("Drive", "crank").
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    bare
-        Whether to look above a table without a header, too.
-    """
+    """Return settings in words above the table: "Drive: crank" as ("Drive", "crank")."""
     return texts_of(_text_above(layout, bare=bare))
 
 
 def lines_without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
-    """Return the lines that state a length, a load or how often strokes come, but no unit of it.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    bare
-        Whether heights are meant: lines that state how far they lie apart, or how long they are.
-    """
+    """Return the lines that state a length, a load or how often strokes come, but no unit of it."""
     of_run = ("track_radius", "track_diameter", "arm", "stroke", "frequency", "load")
     wanted = ("pitch", "profile_length") if bare else of_run
     return [amount.text for amount in numeric_settings(layout, bare=bare).of(*wanted, unit="")]

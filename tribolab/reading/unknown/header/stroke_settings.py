@@ -61,15 +61,7 @@ def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | 
 
 
 def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Strokes | None:
-    """Return the strokes that a person stated, completed by the text.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    said
-        Length and frequency with their units; "" if not stated.
-    """
+    """Return the strokes that a person stated, completed by the text."""
     stated = _stated(values)[:2]
     settings, kept = [], []
     for name, text, value in zip(("stroke", "frequency"), said, stated, strict=True):
@@ -91,15 +83,7 @@ def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
 
 
 def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | None:
-    """Return strokes of a stated length, one pair per turn of a crank.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    often
-        The column with the crank's rotation speed.
-    """
+    """Return strokes of a stated length, one pair per turn of a crank."""
     stroke, _, guess = _stated(values)
     if stroke is None:
         return None

@@ -28,17 +28,6 @@ _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "") -> Amount | None:
     """Return the zero of the friction signal that a file states and that is still in the signal.
 
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    values
-        From `numeric_settings`.
-    unit
-        "N" of a force, "N m" of a torque.
-    said
-        Statement of a person: "taken off", or "in it".
-
     Returns
     -------
     Amount or None
@@ -84,7 +73,7 @@ def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[
 
 
 def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Note that the zero of a record that begins without contact is not subtracted."""
+    """Note that friction is read as it is where the text states a start or strokes without load."""
     held = {c.quantity for c in columns if c.used}
     if "normal_force" in held or "friction_coefficient" in held:
         return []  # the load shows where there is no contact
@@ -94,9 +83,9 @@ def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> l
 
 
 def _says_unloaded_start(line: str) -> bool:
-    """Whether a line states that the record begins without load.
+    """Whether a line states that the record begins, or strokes return, without load.
 
-    >>> lines = ("first 3 s without load", "step 0: load 0 N", "0;0 rpm;0 N", "no load cell")
+    >>> lines = ("first 3 s without load", "step 0: load 0 N", "lifted on return", "no load cell")
     >>> [_says_unloaded_start(line) for line in lines]
     [True, True, True, False]
     """
@@ -107,7 +96,7 @@ def _says_unloaded_start(line: str) -> bool:
     unloaded = unloaded or any(
         said.unit == "N" and not decimal(said.number) for said in phrases(line)
     )
-    return bool(unloaded and (begins or _ROW.match(line)))
+    return bool(unloaded and (begins or says("on_return", line) or _ROW.match(line)))
 
 
 def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:

@@ -46,13 +46,7 @@ def better_name(name: str, meaning: str) -> str:
 
 
 def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
-    """Omit tables in groups next to another one with columns of the same names.
-
-    Parameters
-    ----------
-    columns
-        The columns, all of one length; they may come from several tables that belong together.
-    """
+    """Omit tables in groups next to another one with columns of the same names."""
     kept: dict[str, set[str]] = {}
     left: set[str] = set()
     tables: dict[str, list[str]] = {}
@@ -67,15 +61,7 @@ def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
 
 
 def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:
-    """Name the tables besides the chosen columns that have columns of the same names; "" if none.
-
-    Parameters
-    ----------
-    chosen
-        The columns that are read.
-    every
-        All columns of the file.
-    """
+    """Name other tables that have columns of the same names as the chosen; "" if none."""
     names = {column.label for column in chosen}
     meant = set(map(id, chosen))
     alike: dict[str, int] = {}

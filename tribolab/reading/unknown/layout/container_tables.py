@@ -37,11 +37,6 @@ DRAFTED_FROM = CONTAINERS | {"excel"}
 def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     """Lay the columns of a file out as a table below a line of names.
 
-    Parameters
-    ----------
-    file
-        The file, looked at by `tribolab.reading.text.first_bytes.peek`.
-
     Raises
     ------
     ReadError

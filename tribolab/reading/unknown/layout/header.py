@@ -58,19 +58,7 @@ class Heading(NamedTuple):
 
 
 def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int) -> Heading | None:
-    """Find the header of the table whose first row is line `start` (from 0).
-
-    Parameters
-    ----------
-    lines
-        Lines of the file.
-    start
-        Index of the first row of numbers.
-    grammar
-        How cells are parted.
-    width
-        Number of cells of a row of numbers.
-    """
+    """Find the header of the table whose first row is line `start` (from 0)."""
     above: list[int] = []
     for index in range(start - 1, max(start - _ABOVE, 0) - 1, -1):
         if numbers := grammar.width(lines[index]):

@@ -18,11 +18,6 @@ _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
 def main_sheet(path: Path) -> Held:
     """Return the position of the sheet with the most rows of numbers below names.
 
-    Parameters
-    ----------
-    path
-        The workbook.
-
     Raises
     ------
     ReadError

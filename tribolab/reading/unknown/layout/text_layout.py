@@ -171,11 +171,6 @@ def _refuse_wide(file: File, lines: Sequence[str]) -> None:
 def find_layout(file: File) -> Layout:
     """Find out how a text file is written.
 
-    Parameters
-    ----------
-    file
-        The file, looked at by `tribolab.reading.text.first_bytes.peek`.
-
     Raises
     ------
     ReadError

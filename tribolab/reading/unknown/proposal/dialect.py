@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from tribolab.core.errors import ReadError, TribolabError, brief
 from tribolab.reading.dialect.column_rule import Column
-from tribolab.reading.dialect.file_layout import TEXT_CONTAINERS, Header, Text
+from tribolab.reading.dialect.file_layout import Header, Text
 from tribolab.reading.dialect.model import Derived, Dialect
 from tribolab.reading.dialect.time_rule import Time
 from tribolab.reading.dialect.value_rule import Value
@@ -90,13 +90,6 @@ def describe(layout: Layout, understood: Understood) -> Described:
 def dialect_of(name: str, described: Described) -> Dialect:
     """Return the dialect that reads a file as it was understood.
 
-    Parameters
-    ----------
-    name
-        Name of the dialect.
-    described
-        From `describe`.
-
     Raises
     ------
     ReadError
@@ -105,19 +98,15 @@ def dialect_of(name: str, described: Described) -> Dialect:
     layout, understood, follows, stated, _ = described
     held = layout.held
     form = held.form if held is not None else "text"
-    text = {"arrangement": form} if form in TEXT_CONTAINERS else {}
-    formulas = [
-        formula_content(formula.quantity, formula.formula, formula.zero, formula.way)
-        for formula in follows.formulas
-    ]
+    formulas = [formula_content(f.quantity, f.formula, f.zero) for f in follows.formulas]
     if described.load:
         formulas.append(formula_content("normal_force", f"'{described.load}'"))
     content = {
         "name": name,
         "title": plain(f"files like {layout.file.path.name}"),
-        "format": None if text or form == "text" else form,
+        "format": None if form == "text" else form,
         "recognise": _recognise(described),
-        "text": set_keys(Text, text if held is not None else _text(layout, understood)),
+        "text": set_keys(Text, {} if held is not None else _text(layout, understood)),
         "header": set_keys(Header, _header(layout) if held is None else _sheet(layout)),
         "time": set_keys(Time, _time(understood)),
         "rows": {"are": "points"} if understood.points else None,
@@ -171,10 +160,9 @@ def value_content(value: Amount) -> dict[str, Any]:
     return set_keys(Value, {key: getattr(value, key) for key in keys})
 
 
-def formula_content(quantity: str, formula: str, zero: str = "", way: str = "") -> dict[str, Any]:
+def formula_content(quantity: str, formula: str, zero: str = "") -> dict[str, Any]:
     """Return the [[derived]] entry of a quantity that follows from others."""
-    said = {"quantity": quantity, "formula": formula, "zero": zero or None, "way": way or "both"}
-    return set_keys(Derived, said)
+    return set_keys(Derived, {"quantity": quantity, "formula": formula, "zero": zero or None})
 
 
 def _recognise(described: Described) -> Mapping[str, Any]:

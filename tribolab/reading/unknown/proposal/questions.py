@@ -169,13 +169,7 @@ _OPTIONS = {
 
 
 def missing_options(draft: Drafted) -> list[str]:
-    """Return the options of the command line that state what a file lacks, with an example.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
-    """
+    """Return the options of the command line that state what a file lacks, with an example."""
     members = {lack.member for lack in _lacks(draft)}
     return [option for member, option in _OPTIONS.items() if member in members]
 
@@ -192,13 +186,7 @@ def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
 
 
 def missing_height_unit(draft: Drafted) -> str:
-    """Return what heights alone leave open, with the lines that are not clear enough.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`, one that is `unsaid`.
-    """
+    """Return what heights alone leave open, with the lines that are not clear enough."""
     lines = lines_without_unit(draft.layout, bare=True) if draft.layout else []
     said = ", ".join(f"'{shown(line, 40)}'" for line in lines if draft.unsaid == "pitch")
     return _UNSAID[draft.unsaid] + (f"; {said} has no unit" if said else "")

@@ -27,17 +27,7 @@ _LISTED = 60  # columns that are not used and shown all the same
 
 
 def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
-    """Print what was understood of a file, its first rows, and what was guessed.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
-    console
-        Where to.
-    rows
-        Whether the first rows are shown.
-    """
+    """Print what was understood of a file, its first rows, and what was guessed."""
     kinds = {"run": "a run", "scan": "a scan", "table": "a table, neither a run nor a scan"}
     console.print(f"[bold]{escape(str(draft.path))}[/]: {kinds[draft.kind]}")
     for line in _written(draft):
