@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import islice
 from typing import NamedTuple
 
 from tribolab.reading.lexicon.lexicon import known_words, normalise_label, role_of
@@ -52,10 +53,10 @@ def find_results_table(text: str) -> ResultsTable | None:
     >>> find_results_table("x [mm];z [um]\n0;0,41\n1;0,43\n") is None
     True
     """
-    lines = [line.strip().strip('"') for line in text.splitlines() if line.strip()]
+    lines = _first_lines(text, _MAX_ROWS + 1)
     if len(lines) > _MAX_ROWS:
         return None
-    lines = [_BLANKS.sub("  ", line[: _MAX_LINE + 1]) for line in lines]
+    lines = [_BLANKS.sub("  ", line.strip('"')[: _MAX_LINE + 1]) for line in lines]
     for place, line in enumerate(lines[:_HEAD_LINES]):
         if len(line) > _MAX_LINE:
             return None
@@ -82,8 +83,7 @@ def find_other_test(text: str) -> str:
     >>> find_other_test("Time [s];Shear rate [1/s];Friction force [N]\n0.1;1;2\n")
     ''
     """
-    lines = [line for line in text.splitlines() if line.strip()][:_HEAD_LINES]
-    for line in lines:
+    for line in _first_lines(text, _HEAD_LINES):
         for between in (_CELLS, _COMMAS) if len(line) <= _MAX_LINE else ():
             labels = [label.strip(' "') for label in between.split(_BLANKS.sub("  ", line))]
             if any(map(_NUMBER.fullmatch, labels)):
@@ -95,6 +95,11 @@ def find_other_test(text: str) -> str:
                 if needed <= held:
                     return test
     return ""
+
+
+def _first_lines(text: str, count: int) -> list[str]:
+    """Return the first lines that are not blank, without the blanks around them."""
+    return list(islice((bare for line in text.splitlines() if (bare := line.strip())), count))
 
 
 # files: krlennon/mastercurves (creep, relaxation), bsaintmichel/read-rheol and

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import re
+from itertools import islice
 from pathlib import Path
+from typing import NamedTuple
 
 from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.model import Dialect
@@ -50,8 +53,8 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
     file = path if isinstance(path, File) else peek(path)
     if file.format != "text":  # the reader reports it
         return dialect
-    text, encoding = _decoded(file.head)
-    header, *below = _from_header(file, text, dialect)
+    lines, encoding = _lines_of(file.head)
+    header, *below = _from_header(file, lines, dialect)
     delimiter = max(_DELIMITERS, key=lambda mark: len(split_row(header, mark)))
     if len(split_row(header, delimiter)) < 2:
         delimiter = "whitespace"
@@ -68,6 +71,20 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
     )
 
 
+class _Lines(NamedTuple):
+    """Lines of a text, and the numbers of those that are more than numbers."""
+
+    lines: list[str]
+    named: list[int]
+
+
+@functools.lru_cache(maxsize=2)  # a dozen dialects inspect the same file in turn
+def _lines_of(head: bytes) -> tuple[_Lines, str]:
+    text, encoding = _decoded(head)
+    lines = text.splitlines()
+    return _Lines(lines, [n for n, line in enumerate(lines) if line.strip(_OF_NUMBERS)]), encoding
+
+
 def _decoded(head: bytes) -> tuple[str, str]:
     """Return a file's first text, and its encoding."""
     if head.startswith(_WIDE):
@@ -80,14 +97,13 @@ def _decoded(head: bytes) -> tuple[str, str]:
         return head.decode("latin-1"), "latin-1"
 
 
-def _from_header(file: File, text: str, dialect: Dialect) -> list[str]:
+def _from_header(file: File, text: _Lines, dialect: Dialect) -> list[str]:
     """Return the header line and the following lines that are not blank."""
-    lines = text.splitlines()
+    lines = text.lines
     header = dialect.header
     if header.pattern is not None:
         pattern = guarded(header.pattern)
-        named = (n for n, line in enumerate(lines) if line.strip(_OF_NUMBERS))
-        start = next((n for n in named if pattern.search(lines[n])), len(lines))
+        start = next((n for n in text.named if pattern.search(lines[n])), len(lines))
     else:
         start = (header.line or 1) - 1
     if start >= len(lines):
@@ -95,8 +111,8 @@ def _from_header(file: File, text: str, dialect: Dialect) -> list[str]:
             f"no line has the names of the columns that files of '{dialect.name}' have",
             where=file.path,
         )
-    below = (line for line in lines[start + 1 :] if line.strip())
-    return [lines[start], *(line for line, _ in zip(below, range(_ROWS), strict=False))]
+    below = (line for line in islice(lines, start + 1, None) if line.strip())
+    return [lines[start], *islice(below, _ROWS)]
 
 
 def _decimal(rows: list[str], delimiter: str) -> str:
