@@ -237,7 +237,7 @@ def made_outcome(
         record_curve(store, number, outcome, curve, [slip for _, _, slip in members])
         curves.append(outcome)
     campaign = Campaign(campaign={"name": name, "note": note}, run=[{"files": "*.csv"}])
-    campaign.lies_at(campaign_file)
+    campaign.set_file(campaign_file)
     return Outcome(
         campaign=campaign,
         folder=results,

@@ -223,7 +223,9 @@ def examine(case: int, sources: Sources, folder: Path, show: bool = False) -> Ve
             outcome = "nameless"
         elif len(detail) > LONGEST_MESSAGE:
             outcome = "too long"
-        elif "Traceback" in detail or "\n" in error.told("campaign").strip():  # a table elsewhere
+        elif (
+            "Traceback" in detail or "\n" in error.message_for("campaign").strip()
+        ):  # a table elsewhere
             outcome = "message of several lines"
     except Timeout:
         outcome, detail = "hang", "".join(traceback.format_exc(limit=-4))

@@ -202,7 +202,7 @@ def understood(run):
     try:
         data = read_run(run.files, run.instrument)
     except ReadError as error:
-        return error.told("terminal")
+        return error.message_for("terminal")
     data.attrs.pop("history")  # says when
     return data
 

@@ -28,7 +28,10 @@ def test_every_cure_has_words_of_its_own_for_the_terminal_and_the_campaign():
     for cure in said:
         assert cure.notebook and cure.terminal and cure.campaign
         for audience in ("terminal", "campaign"):
-            assert not (CALL.search(cure.told(audience)) or ARGUMENT.search(cure.told(audience)))
+            assert not (
+                CALL.search(cure.message_for(audience))
+                or ARGUMENT.search(cure.message_for(audience))
+            )
 
 
 def test_an_error_keeps_its_parts_between_processes():
@@ -38,9 +41,9 @@ def test_an_error_keeps_its_parts_between_processes():
     again = pickle.loads(pickle.dumps(outer))
     assert type(again) is errors.AnalysisError
     for audience in errors.AUDIENCES:
-        assert again.told(audience) == outer.told(audience)
+        assert again.message_for(audience) == outer.message_for(audience)
     assert str(again) == "varied speed: read: a.csv: no overlap; say clock_shift="
-    assert again.told("campaign") == "varied speed: a.csv: no overlap; say clock_shift"
+    assert again.message_for("campaign") == "varied speed: a.csv: no overlap; say clock_shift"
 
 
 @pytest.mark.parametrize("part", ["what", "where", "cure"])

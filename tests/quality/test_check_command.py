@@ -241,11 +241,11 @@ def test_a_file_in_the_wrong_table_of_a_campaign_is_told_the_right_one(scans, tm
     (tmp_path / "run.csv").write_text(log)
     with pytest.raises(ReadError) as error:
         read_scans(tmp_path / "run.csv")
-    assert error.value.told("campaign").endswith("; it belongs in a [[run]]")
+    assert error.value.message_for("campaign").endswith("; it belongs in a [[run]]")
     with pytest.raises(ReadError) as error:
         read(scans / "sb-r_1.csv")
-    assert error.value.told("campaign").endswith("; it belongs under scans of a [[surface]]")
-    assert "a campaign under scans of a [[surface]]" in error.value.told("terminal")
+    assert error.value.message_for("campaign").endswith("; it belongs under scans of a [[surface]]")
+    assert "a campaign under scans of a [[surface]]" in error.value.message_for("terminal")
 
 
 def test_info_on_a_long_file_takes_an_excerpt_in_which_each_range_is_nearly_the_whole_files(

@@ -406,6 +406,6 @@ def test_where_a_record_goes_on_after_a_pause_no_sample_stands_out():
         {"time": time},
     )
     assert "spikes" not in objections(check_run(run, find_segments(run)))
-    stands_out = run.copy(deep=True)
-    stands_out.friction_force[600] = 9.0
-    assert objections(check_run(stands_out, find_segments(run)))["spikes"] == "suspect"
+    exceeds_spectrum = run.copy(deep=True)
+    exceeds_spectrum.friction_force[600] = 9.0
+    assert objections(check_run(exceeds_spectrum, find_segments(run)))["spikes"] == "suspect"

@@ -253,13 +253,13 @@ def test_the_table_is_what_papers_print():
     assert table.loc["tilt", "sensitivity"] == pytest.approx(1 + 0.1**2)
     assert table.loc["combined", "u"] == pytest.approx(np.hypot.reduce(table.contribution[:-1]))
     assert table.attrs["U95"] == pytest.approx(1.96 * table.loc["combined", "u"], rel=1e-3)
-    assert budget.says == "too wide, because one rectangular part dominates: tilt"
+    assert budget.caveats == "too wide, because one rectangular part dominates: tilt"
     with pytest.raises(AnalysisError, match="there are 1 values"):
         budget.table(3)
 
 
 def test_without_calibration_it_says_statistical_only():
-    assert tl.metrology.uncertainty_budget(one_segment(0.1, 50.0)).says == (
+    assert tl.metrology.uncertainty_budget(one_segment(0.1, 50.0)).caveats == (
         "calibration not stated: statistical only"
     )
 
@@ -299,7 +299,7 @@ def test_what_is_wrong_in_a_statement_is_said(stated, words):
 def test_a_run_without_normal_force_is_told_what_cannot_be_counted():
     friction = one_segment(0.1, 50.0).drop_vars("normal_force")
     budget = tl.metrology.uncertainty_budget(friction, published(1.0))
-    assert "no normal force was recorded: friction linearity" in budget.says
+    assert "no normal force was recorded: friction linearity" in budget.caveats
     assert np.isfinite(budget.data.friction_coefficient_u).all()
 
 
@@ -358,9 +358,9 @@ def test_each_run_of_a_curve_has_the_uncertainty_that_is_stated_of_it():
     parts = budget.data.uncertainty_part.sel(part=["friction_gain, a", "friction_gain, b"])
     np.testing.assert_allclose(parts.values[:, 0], [0.0005, 0.0015])
     assert budget.table().loc["friction gain, b", "u"] == pytest.approx(0.03)
-    assert budget.says == ""
+    assert budget.caveats == ""
     bare = [run.drop_attrs().assign_attrs(instrument="c") for run in first]
-    assert tl.metrology.uncertainty_budget([*runs, *bare]).says == "calibration of c not stated"
+    assert tl.metrology.uncertainty_budget([*runs, *bare]).caveats == "calibration of c not stated"
 
 
 def test_a_recalibrated_instrument_has_two_gains():

@@ -80,7 +80,9 @@ def test_what_is_open_is_asked_all_at_once_with_the_alternatives(unclear):
     assert "Load Cell" not in str(error.asked)  # beside a friction force it is the other
     assert told.endswith("'tribolab info odd.csv --write my.toml' drafts a description of it: "
                          "name it with instrument=")  # fmt: skip
-    assert "\n" not in error.told("campaign") and "in which unit?" in error.told("campaign")
+    assert "\n" not in error.message_for("campaign") and "in which unit?" in error.message_for(
+        "campaign"
+    )
     assert "linear_slider" not in told  # nor any other of the known
 
 

@@ -209,5 +209,5 @@ def test_lines_that_may_state_what_is_missing_are_quoted(tmp_path):
     (tmp_path / "a.csv").write_text(head + rows + "\n", "utf-8")
     with pytest.raises(TribolabError) as refused:
         tl.read(tmp_path / "a.csv")
-    told = refused.value.told("terminal")
+    told = refused.value.message_for("terminal")
     assert "is it 'Kommutator-Maß;42,0;mm'?" in told and "is it 'Federkennwert;3,5;N'?" in told

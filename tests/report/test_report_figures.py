@@ -60,7 +60,7 @@ def the_next(made, folder, **changes):
     for kind, record in (("run", RunRecord), ("curve", CurveRecord)):
         for place, entry in enumerate(made.store.all(kind, record)):
             if entry.record.outcome.data_file:
-                store.link_beside(entry.record.outcome.data_file)
+                store.link_file(entry.record.outcome.data_file)
             trace = store.before.trace(kind, entry.name)
             store.put(kind, entry.name, place, entry.fingerprint, entry.record, trace)
     return replace(made, folder=folder, store=store, **changes)

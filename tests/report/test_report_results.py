@@ -385,7 +385,7 @@ def test_the_campaign_s_note_stands_at_the_top_of_the_page(tmp_path, note):
     made = made_outcome(tmp_path, [("one", "Sb-R", "dry", 31.0, 0.8)], samples=60)
     about = made.campaign.campaign.model_copy(update={"note": note})
     campaign = made.campaign.model_copy(update={"campaign": about})
-    campaign.lies_at(made.campaign.file)
+    campaign.set_file(made.campaign.file)
     write_report(replace(made, campaign=campaign), figures="none")
     valid(json.loads((made.folder / "report.json").read_text()))
     top = (made.folder / "report.html").read_text(encoding="utf-8").split("</header>")[0]

@@ -16,7 +16,7 @@ from rich.table import Table
 from tribolab.app.info.file_info import read_scan
 from tribolab.app.streams import say
 from tribolab.campaign.engine.stage import Progress, Stage, perform
-from tribolab.core.errors import ConfigError, TribolabError, told
+from tribolab.core.errors import ConfigError, TribolabError, message_for
 from tribolab.core.untyped import Json
 from tribolab.core.wording import explain
 from tribolab.qc.findings import FindingRow, Findings, exit_code, finding_texts
@@ -194,7 +194,7 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
 def _error_text(error: BaseException) -> str:
     """Return why a file cannot be read; for unexpected errors with their location."""
     foreseen = isinstance(error, TribolabError | OSError)
-    return told(error, "terminal") if foreseen else explain(error)[0]
+    return message_for(error, "terminal") if foreseen else explain(error)[0]
 
 
 def _kind_of(path: Path, instrument: str | Path | None) -> str:
@@ -272,7 +272,7 @@ def _check_scans(task: CheckTask) -> list[Checked]:
     if scans:
         own = [[r for path, r in results.items() if _are_results_of(path, file)] for file in scans]
         judged = check_scan_set(list(scans.values()), results=own)
-        checked += [Checked.of((f,), said, "scan") for f, said in zip(scans, judged, strict=True)]
+        checked += [Checked.of((f,), found, "scan") for f, found in zip(scans, judged, strict=True)]
     return checked
 
 

@@ -192,14 +192,14 @@ def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str
     # imported late for a quick start
     from tribolab.app.info.file_info import file_lines
 
-    said = []
+    reasons = []
     paths = [file for path in paths for file in (files_in(path) if path.is_dir() else [path])]
     for path in paths:
         try:
             file_lines(path, instrument)
         except TribolabError as error:
-            said.append(error.told("terminal"))
-    return said if len(said) == len(paths) else []
+            reasons.append(error.message_for("terminal"))
+    return reasons if len(reasons) == len(paths) else []
 
 
 def _has_text(file: Path, text: str) -> bool:
@@ -210,10 +210,10 @@ def _is_campaign(path: Path) -> bool:
     if path.suffix.lower() == ".toml":
         return True
     try:
-        told = tomllib.loads(path.read_text("utf-8")) if path.stat().st_size < 1 << 20 else {}
+        content = tomllib.loads(path.read_text("utf-8")) if path.stat().st_size < 1 << 20 else {}
     except (OSError, ValueError, RecursionError):
         return False
-    return bool({"campaign", "run", "surface"} & told.keys())
+    return bool({"campaign", "run", "surface"} & content.keys())
 
 
 def campaign_text(

@@ -76,9 +76,9 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
     try:
         yield
     except (ConfigError, UnitError) as error:
-        fail(error.told(audience), USAGE, debug)
+        fail(error.message_for(audience), USAGE, debug)
     except TribolabError as error:
-        fail(error.told(audience), UNREADABLE, debug)
+        fail(error.message_for(audience), UNREADABLE, debug)
     except KeyboardInterrupt as stop:
         code = stop.code if isinstance(stop, Terminated) else _INTERRUPTED
         fail("interrupted; results of before are as they were", code, debug)

@@ -115,10 +115,10 @@ def _largest_error(points: Sequence[Row]) -> str:
     if not known:
         return _NONE
     several = [int(row.get("runs") or 1) > 1 for row in points]
-    held = "within or between runs"
+    source = "within or between runs"
     if all(several) or not any(several):
-        held = "between runs" if several[0] else "within the run"
-    return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} {held}"
+        source = "between runs" if several[0] else "within the run"
+    return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} {source}"
 
 
 def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
@@ -128,9 +128,9 @@ def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
     known = [v for row in rows if (v := row.get("friction_coefficient")) is not None]
     text = range_of(f"{min(known):.3f}", f"{max(known):.3f}") if known else _NONE
     is_known = any(row.get("sliding_speed_m_s") is not None for row in rows)
-    said = _NONE if is_known else "speed unknown"
+    note = _NONE if is_known else "speed unknown"
     runs = [run for run in outcome.runs if run.name in curve.run_names]
-    return str(len(runs)), str(sum(run.segments for run in runs)), said, text, _largest_error(rows)
+    return str(len(runs)), str(sum(run.segments for run in runs)), note, text, _largest_error(rows)
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
@@ -156,8 +156,8 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         if len(names) > _HANDFUL:
             file = from_here(outcome.folder / "tables" / "checks.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
-    said = outcome.campaign.contradicting_viscosities()
-    lines += [f"medium {name}: {text}" for name, text in said.items()]
+    contradictions = outcome.campaign.contradicting_viscosities()
+    lines += [f"medium {name}: {text}" for name, text in contradictions.items()]
     lines += _run_notices(done, outcome)
     lines += _undecided(done, outcome)
     lines += _decisions(outcome)
@@ -226,13 +226,13 @@ def _decisions(outcome: Outcome) -> list[str]:
         (f"{Count(sum(run.quality == word for run in decided)):run|runs} {word}", word)
         for word in ("rejected", "accepted")
     ]
-    parts = [said for said, word in counts if any(run.quality == word for run in decided)]
+    parts = [text for text, word in counts if any(run.quality == word for run in decided)]
     of = [run for run in decided if run.segments_rejected and run.quality != "rejected"]
     if count := sum(run.segments_rejected for run in of):
         parts.append(f"{Count(count):segment|segments} of {Count(len(of)):run|runs} rejected")
-    said = ", ".join(parts) or f"on {Count(len(decided)):run|runs}"
+    text = ", ".join(parts) or f"on {Count(len(decided)):run|runs}"
     return [
-        f"decided by hand: {said}: see {from_here(outcome.folder / 'tables' / 'decisions.csv')}"
+        f"decided by hand: {text}: see {from_here(outcome.folder / 'tables' / 'decisions.csv')}"
     ]
 
 
@@ -253,8 +253,8 @@ def _reasons_of_run(run: RunOutcome, outcome: Outcome) -> str:
 def _reasons(rows: Iterable[Mapping[str, Any]], status: str) -> str:
     """Return the checks with this status, and their messages."""
     mine = [row for row in rows if row["status"] == status and not row.get("decision")]
-    said = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
-    return "".join(f": {' '.join(text.split())}" for text in ["; ".join(said)] if text)
+    texts = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
+    return "".join(f": {' '.join(text.split())}" for text in ["; ".join(texts)] if text)
 
 
 def _computed(outcome: Outcome) -> str:
@@ -392,9 +392,11 @@ def _not_described(results: Path) -> str:
         return ""
     fits = tables.read_csv(path)
     fits = fits[[not is_described(words) for words in fits.judgement]]
-    said = [f"{Count(n):curve|curves} of {name}" for name, n in fits.surface.value_counts().items()]
+    counts = [
+        f"{Count(n):curve|curves} of {name}" for name, n in fits.surface.value_counts().items()
+    ]
     verb = "is" if len(fits) == 1 else "are"
-    return f" ({', '.join(said)} {verb} not described by the model)" if said else ""
+    return f" ({', '.join(counts)} {verb} not described by the model)" if counts else ""
 
 
 def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:

@@ -105,14 +105,14 @@ class OfLists(Protocol[P, R_co]):
     def __call__(self, *args: Any, **kwargs: Any) -> list[R_co]: ...
 
 
-def of_lists(*names: str, beside: str = "") -> Callable[[Callable[P, R]], OfLists[P, R]]:
+def of_lists(*names: str, paired: str = "") -> Callable[[Callable[P, R]], OfLists[P, R]]:
     """Extend a function to lists for these arguments, for which it returns a list.
 
     Parameters
     ----------
     *names
         Arguments that may be lists; single values apply to all.
-    beside
+    paired
         Another argument, whose list belongs to one call unless another argument is a list too.
 
     Examples
@@ -133,12 +133,12 @@ def of_lists(*names: str, beside: str = "") -> Callable[[Callable[P, R]], OfList
             own = {name: given[name] for name in names if isinstance(given.get(name), list)}
             if not own:
                 return function(*args, **kwargs)
-            if isinstance(given.get(beside), list):
-                own[beside] = given[beside]
+            if isinstance(given.get(paired), list):
+                own[paired] = given[paired]
             counts = {name: len(value) for name, value in own.items()}
             if len({*counts.values()}) > 1:
-                told = ", ".join(f"{count} for {name}" for name, count in counts.items())
-                raise AnalysisError(f"{function.__name__}: lists of one length are wanted: {told}")
+                sizes = ", ".join(f"{count} for {name}" for name, count in counts.items())
+                raise AnalysisError(f"{function.__name__}: lists of one length are wanted: {sizes}")
             count = next(iter(counts.values()))
             return [_call_each(function, given, own, 0, number) for number in range(count)]
 

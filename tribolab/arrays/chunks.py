@@ -117,12 +117,12 @@ def _all_of(values: np.ndarray) -> Iterator[tuple[int, int]]:
     return pieces(0, len(values))
 
 
-def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
+def stretches(has_property: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
     """Return the intervals of a record in which a condition is true.
 
     Parameters
     ----------
-    holds
+    has_property
         Mask of a piece, from its first sample and its end.
     count
         Samples of the record.
@@ -140,7 +140,7 @@ def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray
     """
     edges, before = [np.zeros(0, int)], False
     for first, last in pieces(0, count):
-        now = holds(first, last)
+        now = has_property(first, last)
         edges.append(first + np.flatnonzero(now != np.concatenate([[before], now[:-1]])))
         before = bool(now[-1])
     end = np.array([count] if before else [], dtype=int)

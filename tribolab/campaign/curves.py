@@ -13,7 +13,7 @@ import numpy as np
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.analysis import AS_FOUND
 from tribolab.campaign.runs.loads import level_mask
-from tribolab.campaign.runs.stage import RunCame
+from tribolab.campaign.runs.stage import RunHandle
 from tribolab.campaign.settings.naming.run_names import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import digest, write_data
@@ -96,7 +96,7 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
 
     def __init__(
         self,
-        runs: Iterable[RunCame],
+        runs: Iterable[RunHandle],
         store: Store,
         speed_tolerance: float = SPEED_TOLERANCE.value,
     ) -> None:
@@ -105,7 +105,7 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
 
     def plan(self) -> list[CurveTask]:
         """Group the runs by surface, medium and load."""
-        groups: dict[Condition, list[RunCame]] = {}
+        groups: dict[Condition, list[RunHandle]] = {}
         for came in self._runs:
             if came.outcome.in_curves or came.outcome.in_curves_as_found:
                 for condition in _conditions(came.outcome):
@@ -122,9 +122,9 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             for name, (key, members) in zip(names, groups.items(), strict=True)
         ]
 
-    def _task(self, name: str, condition: Condition, members: Sequence[RunCame]) -> CurveTask:
+    def _task(self, name: str, condition: Condition, members: Sequence[RunHandle]) -> CurveTask:
         used = [came for came in members if came.outcome.in_curves]
-        undecided: list[RunCame] = []
+        undecided: list[RunHandle] = []
         if any(came.outcome.quality_as_found for came in members):  # somebody decided
             undecided = [came for came in members if came.outcome.in_curves_as_found]
         surface, medium, load, _ = condition

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.campaign.runs.stage import RunCame
+from tribolab.campaign.runs.stage import RunHandle
 from tribolab.campaign.store.catalogue import Store
 from tribolab.core.wording import percent
 from tribolab.records.part_records import CurveRecord
@@ -27,8 +27,8 @@ class _Condition(NamedTuple):
 
 
 def add_odd_repeats(
-    store: Store, came: Sequence[RunCame], curves: Iterable[CurveRecord], *, skip: bool = False
-) -> list[RunCame]:
+    store: Store, runs: Sequence[RunHandle], curves: Iterable[CurveRecord], *, skip: bool = False
+) -> list[RunHandle]:
     """Mark the runs that differ from their repeats by far more than other repeats do.
 
     Parameters
@@ -43,8 +43,8 @@ def add_odd_repeats(
         Whether the check is switched off.
     """
     conditions = [] if skip else [c for c in map(_condition, curves) if c is not None]
-    said = _verdicts(conditions)
-    return [_update_run(store, run, place, said) for place, run in enumerate(came)]
+    checks = _verdicts(conditions)
+    return [_update_run(store, run, place, checks) for place, run in enumerate(runs)]
 
 
 def _condition(curve: CurveRecord) -> _Condition | None:
@@ -61,7 +61,7 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
     # imported late for a quick start
     from tribolab.friction.points.odd_repeats import odd_repeats
 
-    said: dict[str, CheckRow] = {}
+    checks: dict[str, CheckRow] = {}
     alone = len(conditions) == 1 and len(conditions[0].runs) < 3
     sound = (
         "agrees with its repeats as well as they agree with each other"
@@ -73,7 +73,7 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
             text = (
                 "only one condition was repeated, and only twice: how well runs repeat is unknown"
             )
-            said[name] = _row("skipped", text) if alone else _row("pass", sound)
+            checks[name] = _row("skipped", text) if alone else _row("pass", sound)
     for odd in odd_repeats([np.log(condition.levels) for condition in conditions]):
         runs = conditions[odd.condition].runs
         scatter = percent(odd.repeatability)
@@ -85,7 +85,7 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
                     f"{percent(odd.deviation)}, {usual}. The mean of the two is doubtful. Repeat "
                     "the measurement, or reject the wrong run in review.toml"
                 )
-                said[name] = _row("suspect", text, odd.deviation)
+                checks[name] = _row("suspect", text, odd.deviation)
             continue
         name = runs[odd.repeat]
         side = "above" if odd.deviation > 0 else "below"
@@ -94,15 +94,15 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
             f"{len(runs) - 1} repeats, {usual}. The mean includes it. Check mounting, zero and "
             "specimen; reject the run in review.toml if it is wrong"
         )
-        said[name] = _row("suspect", text, odd.deviation)
-    return said
+        checks[name] = _row("suspect", text, odd.deviation)
+    return checks
 
 
 def _row(status: str, message: str, value: float | None = None) -> CheckRow:
     return CheckRow(REPEATS, status, _VARIABLE, message, value, "1")
 
 
-def _update_run(store: Store, run: RunCame, place: int, said: dict[str, CheckRow]) -> RunCame:
+def _update_run(store: Store, run: RunHandle, place: int, checks: dict[str, CheckRow]) -> RunHandle:
     """Store a run with the new result of the check instead of its earlier one."""
     name, quality = run.outcome.name, run.outcome.quality
     entry = store.get("run", name, RunRecord)
@@ -110,7 +110,7 @@ def _update_run(store: Store, run: RunCame, place: int, said: dict[str, CheckRow
         return run
     before = entry.record.facts.checks
     others = tuple(row for row in before if row.check != REPEATS)
-    own = said.get(name)
+    own = checks.get(name)
     if own is not None and own.status == "suspect" and quality in _BY_HAND:
         own = replace(own, decision=f"the run was {quality} by hand")
     rows = others if own is None else (*others, own)

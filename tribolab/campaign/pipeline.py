@@ -15,7 +15,7 @@ from tribolab.campaign.models.stage import Models
 from tribolab.campaign.odd_runs import REPEATS, add_odd_repeats
 from tribolab.campaign.runs.kept import keep_runs
 from tribolab.campaign.runs.repeats import share_loads
-from tribolab.campaign.runs.stage import RunCame, Runs
+from tribolab.campaign.runs.stage import RunHandle, Runs
 from tribolab.campaign.runs.zeros import lent_zeros
 from tribolab.campaign.settings.plan import PlannedRun, planned_runs
 from tribolab.campaign.settings.review import lost_decisions
@@ -114,10 +114,10 @@ def process(
 
 def _repeat_with_lent_zeros(
     runs: Sequence[PlannedRun],
-    came: Sequence[RunCame],
+    came: Sequence[RunHandle],
     store: Store,
     executor: Executor | None,
-) -> list[RunCame]:
+) -> list[RunHandle]:
     """Repeat runs without their own zero with the zeros of other runs of the instrument."""
     zeros = {run.name: before.zero for run, before in zip(runs, came, strict=True)}
     again = lent_zeros(zeros)
@@ -133,7 +133,7 @@ def _repeat_with_lent_zeros(
     return [done.get(run.name, before) for run, before in zip(runs, came, strict=True)]
 
 
-def _refuse_if_all_died(came: Iterable[RunCame]) -> None:
+def _refuse_if_all_died(came: Iterable[RunHandle]) -> None:
     """Raise if every worker died, so that empty results do not replace good ones."""
     done = [run.outcome for run in came if not run.outcome.reused]
     if done and all(outcome.error == WorkerDied.__name__ for outcome in done):

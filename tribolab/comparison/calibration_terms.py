@@ -166,14 +166,14 @@ def terms_text(made: Sequence[CalibrationTerms]) -> str:
     own = tuple(dict.fromkeys(name for terms in made for name in terms.own if name not in shared))
     if not shared and not own:
         return _NOT_STATED
-    said = []
+    texts = []
     if own:
-        said.append(f"each of the two has its own {_join_names(own)}, and both errors count")
+        texts.append(f"each of the two has its own {_join_names(own)}, and both errors count")
     if shared:
-        said.append(
+        texts.append(
             f"of {_join_names(shared)}, which they share, only what acts on them differently counts"
         )
-    return "in addition to the scatter of the runs: " + "; ".join(said)
+    return "in addition to the scatter of the runs: " + "; ".join(texts)
 
 
 def _join_names(names: tuple[str, ...]) -> str:

@@ -76,12 +76,12 @@ def _pairs(kind: str, first: Mapping[str, str], second: Mapping[str, str]) -> li
 
 
 def _decisions(first: Folder, second: Folder) -> list[Change]:
-    told = [
+    decisions = [
         {run["name"]: _decision_text(run) for run in folder.report["runs"]}
         for folder in (first, second)
     ]
-    both = [name for name in told[0] if name in told[1]]
-    return _pairs("decisions", *({name: of[name] for name in both} for of in told))
+    both = [name for name in decisions[0] if name in decisions[1]]
+    return _pairs("decisions", *({name: of[name] for name in both} for of in decisions))
 
 
 def _decision_text(run: Json) -> str:

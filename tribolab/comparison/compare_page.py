@@ -40,8 +40,8 @@ def comparison_verdict(compared: Comparison) -> str:
         for word, text in words.items()
         if compared.counts.get(word)
     ]
-    said = "; ".join(counts) or "nothing differs, and the raw data are the same"
-    return f"{' and '.join(compared.names)}: {many(points, 'point')}, {said}"
+    summary = "; ".join(counts) or "nothing differs, and the raw data are the same"
+    return f"{' and '.join(compared.names)}: {many(points, 'point')}, {summary}"
 
 
 def _open_to(compared: Comparison) -> str:
@@ -84,7 +84,7 @@ def write_comparisons(compared: Sequence[Comparison], folder: Path) -> Path:
 
 def _parts(compared: Comparison, end: str) -> list[Part]:
     first, second = compared.names
-    said = f": {second} less {first}" if end else ""
+    meaning = f": {second} less {first}" if end else ""
     drawn = Picture(
         plot.differences(compared.points, title=f"{second} less {first}"),
         "Difference of the friction coefficient over speed, relative to the first; bars hold all "
@@ -109,10 +109,10 @@ def _parts(compared: Comparison, end: str) -> list[Part]:
         "difference was proved, not that the two are equal."
     )
     return [
-        *([_changes(compared, end, said)] if compared.two_folders else []),
+        *([_changes(compared, end, meaning)] if compared.two_folders else []),
         Part(
             f"points{end}",
-            f"Friction over speed{said}",
+            f"Friction over speed{meaning}",
             texts=(plainly, margin),
             figures=(drawn,),
             tables=(_points(compared, end),),
@@ -123,14 +123,14 @@ def _parts(compared: Comparison, end: str) -> list[Part]:
         ),
         Part(
             f"numbers{end}",
-            f"Numbers of conditions and surfaces{said}",
+            f"Numbers of conditions and surfaces{meaning}",
             figures=(wood,),
             tables=(_quantities(compared, end),),
         ),
     ]
 
 
-def _changes(compared: Comparison, end: str, said: str) -> Part:
+def _changes(compared: Comparison, end: str, meaning: str) -> Part:
     rows = [
         cells((change.kind, change.what, change.first, change.second))
         for change in compared.changes
@@ -139,7 +139,7 @@ def _changes(compared: Comparison, end: str, said: str) -> Part:
     nothing = ("Settings, decisions, code and raw data are the same.",)
     return Part(
         f"changes{end}",
-        f"What changed{said}",
+        f"What changed{meaning}",
         texts=() if rows else nothing,
         tables=(sheet,) if rows else (),
     )

@@ -131,8 +131,8 @@ def open_folder(path: str | Path) -> Folder:
     path = Path(path)
     file = path / REPORT
     if not file.is_file():
-        beside = path / "results" / REPORT
-        if beside.is_file():
+        report_file = path / "results" / REPORT
+        if report_file.is_file():
             return open_folder(path / "results")
         raise ReadError(
             f"{path}: no folder of results: it has no {REPORT}; name the folder that "

@@ -14,12 +14,12 @@ from tribolab.metrology.run_length import signal_probability
 from tribolab.report import tables
 
 
-def history_verdict(told: History) -> str:
+def history_verdict(history: History) -> str:
     """Return the result of the history as one sentence."""
-    charts = many(len(told.charts), "chart")
-    judged = [chart for chart in told.charts if chart.chart is not None]
+    charts = many(len(history.charts), "chart")
+    judged = [chart for chart in history.charts if chart.chart is not None]
     if not judged:
-        most = max((chart.values.size for chart in told.charts), default=0)
+        most = max((chart.values.size for chart in history.charts), default=0)
         missing = 2 * FEWEST_OF_BASELINE - most
         return (
             f"nothing judged yet: the longest of {charts} has {many(most, 'point')}, and a control "
@@ -28,44 +28,44 @@ def history_verdict(told: History) -> str:
             if missing > 0
             else f"nothing judged yet: the remarks say why no chart of {charts} can be judged"
         )
-    if not told.signalling:
-        others = len(told.charts) - len(judged)
+    if not history.signalling:
+        others = len(history.charts) - len(judged)
         return f"{charts}: no signal" + (f", {others} not judged yet" if others else "")
-    named = ", ".join(_name(chart, told) for chart in told.signalling[:4])
-    more = len(told.signalling) - 4
-    signal = "signal" if len(told.signalling) > 1 else "signals"
+    named = ", ".join(_name(chart, history) for chart in history.signalling[:4])
+    more = len(history.signalling) - 4
+    signal = "signal" if len(history.signalling) > 1 else "signals"
     return (
-        f"{len(told.signalling)} of {charts} {signal}: {named}"
+        f"{len(history.signalling)} of {charts} {signal}: {named}"
         f"{f' and {more} more' if more > 0 else ''}"
     )
 
 
-def _name(chart: InstrumentHistory, told: History) -> str:
+def _name(chart: InstrumentHistory, history: History) -> str:
     """Return the name of the quantity, with the instrument if there are several."""
-    several = len({other.instrument for other in told.charts}) > 1
+    several = len({other.instrument for other in history.charts}) > 1
     return f"{chart.instrument}: {chart.quantity}" if several else chart.quantity
 
 
-def write_history(told: History, folder: Path) -> Path:
+def write_history(history: History, folder: Path) -> Path:
     """Write ``history.html`` and ``history.csv``, and return the page."""
     folder.mkdir(parents=True, exist_ok=True)
-    tables.write_csv(told.table(), folder / "history.csv")
+    tables.write_csv(history.table(), folder / "history.csv")
     page = folder / "history.html"
-    instruments = dict.fromkeys(chart.instrument for chart in told.charts)
+    instruments = dict.fromkeys(chart.instrument for chart in history.charts)
     write_parts(
         page,
         kind="History of instruments",
         heading=", ".join(name or "instrument not named" for name in instruments),
-        verdict=history_verdict(told),
-        fine=not told.signalling and any(chart.chart is not None for chart in told.charts),
-        parts=[_summary(told), *(_chart(chart, told) for chart in _order_charts(told))],
+        verdict=history_verdict(history),
+        fine=not history.signalling and any(chart.chart is not None for chart in history.charts),
+        parts=[_summary(history), *(_chart(chart, history) for chart in _order_charts(history))],
     )
     return page
 
 
-def _order_charts(told: History) -> list[InstrumentHistory]:
+def _order_charts(history: History) -> list[InstrumentHistory]:
     """Return the charts: those that signal first, those without verdict last."""
-    return sorted(told.charts, key=lambda chart: (not chart.signals.size, chart.chart is None))
+    return sorted(history.charts, key=lambda chart: (not chart.signals.size, chart.chart is None))
 
 
 def _verdict(chart: InstrumentHistory) -> str:
@@ -77,32 +77,32 @@ def _verdict(chart: InstrumentHistory) -> str:
     return f"not as usual since {first}"
 
 
-def _summary(told: History) -> Part:
+def _summary(history: History) -> Part:
     rows = [
         cells(
             (
-                _name(chart, told), chart.unit, len(chart.values), chart.baseline_points,
+                _name(chart, history), chart.unit, len(chart.values), chart.baseline_points,
                 float(chart.values[-1]), chart.chart.low if chart.chart else float("nan"),
                 chart.chart.high if chart.chart else float("nan"), len(chart.signals),
                 _verdict(chart),
             ),
             digits=4,
         )
-        for chart in _order_charts(told)
+        for chart in _order_charts(history)
     ]  # fmt: skip
     heads = ("Quantity", "Unit", "Points", "Baseline", "Last", "From", "To", "Signals", "Verdict")
     due = [
         f"{name}: calibration due {due.date.isoformat() if due.date else 'unknown'} ({due.reason})."
-        for name, due in told.due.items()
+        for name, due in history.due.items()
     ]
-    unread = [f"Left out: {text}" for text in told.unread[:20]]
+    unread = [f"Left out: {text}" for text in history.unread[:20]]
     return Part(
         "summary",
         "All charts",
         texts=(
             "Each campaign is one point. The first ones define the usual range; a later one "
             "signals if it, or several together, lie further off than chance explains "
-            f"(rules: {', '.join(told.rules)}).{_chance_text(told)}",
+            f"(rules: {', '.join(history.rules)}).{_chance_text(history)}",
             *due,
             *unread,
         ),
@@ -110,27 +110,27 @@ def _summary(told: History) -> Part:
     )
 
 
-def _chance_text(told: History) -> str:
+def _chance_text(history: History) -> str:
     """Return text on how often any chart would signal without a change."""
-    judged = [chart for chart in told.charts if chart.chart is not None]
+    judged = [chart for chart in history.charts if chart.chart is not None]
     if not judged:
         return ""
     none = 1.0
     for chart in judged:
         points, usual = chart.values.size - chart.baseline_points, chart.baseline_points
-        none *= 1 - signal_probability(points, told.rules, baseline=usual)
+        none *= 1 - signal_probability(points, history.rules, baseline=usual)
     return (
         f" If nothing had changed, one or more of the {many(len(judged), 'chart')} that could be "
         f"judged would signal by chance in up to {100 * (1 - none):.0f} % of such pages."
     )
 
 
-def _chart(chart: InstrumentHistory, told: History) -> Part:
+def _chart(chart: InstrumentHistory, history: History) -> Part:
     rows = chart.table()
-    name = _name(chart, told)
+    name = _name(chart, history)
     drawn = Picture(plot.control(rows, title=name), name, f"{name} over time.")
-    said = expectations(chart, told.rules)
-    texts = [said[0].upper() + said[1:] + "."]
+    text = expectations(chart, history.rules)
+    texts = [text[0].upper() + text[1:] + "."]
     if chart.remark and chart.chart is not None:
         texts.append(chart.remark[0].upper() + chart.remark[1:] + ".")
     marked = rows[rows["signal"] != ""]

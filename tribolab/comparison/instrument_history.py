@@ -196,7 +196,7 @@ def history(
         try:
             made, folder = observations_of(path)
         except TribolabError as error:
-            unread.append(error.told("terminal"))
+            unread.append(error.message_for("terminal"))
             continue
         points += made
         stated = None if folder.campaign is None else folder.campaign.calibration
@@ -207,9 +207,9 @@ def history(
                     calibrations[name] = stated
     if unread and not points:
         raise ReadError("; ".join(unread[:3]))
-    told = history_of(points, rules=rules, baseline=baseline)
-    due = {name: _due(stated, told.charts, name) for name, stated in calibrations.items()}
-    return History(told.charts, told.rules, due, tuple(unread))
+    history = history_of(points, rules=rules, baseline=baseline)
+    due = {name: _due(stated, history.charts, name) for name, stated in calibrations.items()}
+    return History(history.charts, history.rules, due, tuple(unread))
 
 
 def history_of(

@@ -137,15 +137,15 @@ def measuring_plan(
     count = runs_for_standard_error if standard_error is not None else runs_for_half_interval
     rows = []
     for text, speed, runs in _pilots(pilot):
-        told, sliding, mean = _scatter(runs)
+        scatter, sliding, mean = _scatter(runs)
         row = {"condition": text, SPEED_COLUMN: speed, "mean": mean, "pilot_runs": len(runs)}
-        row |= {"within_std": told.within, "autocorrelation_time_s": told.memory}
-        row |= {"between_runs_std": told.between, "sliding_time_s": sliding}
-        cheapest = cheapest_sliding_time(told, setup_time, LONGEST_STROKE * sliding)
+        row |= {"within_std": scatter.within, "autocorrelation_time_s": scatter.memory}
+        row |= {"between_runs_std": scatter.between, "sliding_time_s": sliding}
+        cheapest = cheapest_sliding_time(scatter, setup_time, LONGEST_STROKE * sliding)
         for name, each in (("", sliding), ("cheapest_", cheapest)):
             row[f"{name}sliding_time_s"] = each
             for sure, chance in (("", None), ("assured_", assurance)):
-                needed = count(run_variance(told, each), goal, chance, len(runs))
+                needed = count(run_variance(scatter, each), goal, chance, len(runs))
                 runs_needed = math.nan if needed is None else float(needed)
                 row[f"{name}{sure}runs"] = runs_needed
                 row[f"{name}{sure}time_s"] = runs_needed * (setup_time + each)
@@ -263,5 +263,5 @@ def _span(runs: pd.Series) -> str:
     low, high = runs.min(), runs.max()
     if not math.isfinite(low):
         return "runs out of reach"
-    told = many(int(low), "run") if low == high else f"{low:.0f} to {high:.0f} runs"
-    return told + (" (out of reach at some points)" if runs.isna().any() else "")
+    text = many(int(low), "run") if low == high else f"{low:.0f} to {high:.0f} runs"
+    return text + (" (out of reach at some points)" if runs.isna().any() else "")

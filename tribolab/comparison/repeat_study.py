@@ -109,8 +109,8 @@ def repeatability(
     ...     "run": list("abcdef"), "mount": [1, 1, 2, 2, 3, 3], "sliding_speed_m_s": 1e-3,
     ...     "friction_coefficient": [1.0, 1.2, 2.0, 2.2, 3.0, 3.2],
     ... })
-    >>> told = repeatability(table, "mount").table.iloc[0]
-    >>> f"{told.repeatability_std:.3f} {told.between_mount_std:.3f}"
+    >>> row = repeatability(table, "mount").table.iloc[0]
+    >>> f"{row.repeatability_std:.3f} {row.between_mount_std:.3f}"
     '0.141 0.995'
     """
     if isinstance(table, Results):
@@ -280,13 +280,13 @@ def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=heads)
 
 
-def repeatability_verdict(told: Repeatability) -> str:
+def repeatability_verdict(study: Repeatability) -> str:
     """Return the result of the study as one sentence."""
-    last = told.table.iloc[-1]
+    last = study.table.iloc[-1]
     parts = [f"within {100 * last.repeatability_std:.2g} %"]
-    for name in told.by:
+    for name in study.by:
         parts.append(f"between levels of {name} {100 * last[f'between_{name}_std']:.2g} %")
-    odd = 0 if told.mandel.empty else int(_is_odd(told.mandel).sum())
+    odd = 0 if study.mandel.empty else int(_is_odd(study.mandel).sum())
     marked = f"; {many(odd, 'result')} beyond Mandel's limits" if odd else ""
     return f"standard deviations relative to the mean: {', '.join(parts)}{marked}"
 

@@ -11,14 +11,14 @@ from tribolab.core.wording import many, percent
 from tribolab.report import tables
 
 
-def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path:
+def write_repeatability(study: Repeatability, heading: str, folder: Path) -> Path:
     """Write ``repeatability.html`` and its tables, and return the page."""
     folder.mkdir(parents=True, exist_ok=True)
-    tables.write_csv(told.table, folder / "repeatability.csv")
-    if not told.mandel.empty:
-        tables.write_csv(told.mandel, folder / "mandel.csv")
+    tables.write_csv(study.table, folder / "repeatability.csv")
+    if not study.mandel.empty:
+        tables.write_csv(study.mandel, folder / "mandel.csv")
     drawn = Picture(
-        plot.precision(told.table, title=", ".join(told.by)),
+        plot.precision(study.table, title=", ".join(study.by)),
         "Standard deviations within runs that were measured alike, between the levels of each "
         "factor, and all together, relative to the mean.",
         "Standard deviations over sliding speed.",
@@ -26,49 +26,49 @@ def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path
     part = Part(
         "components",
         "Components of variance",
-        texts=_explanations(told),
+        texts=_explanations(study),
         figures=(drawn,),
-        tables=(_components(told),),
+        tables=(_components(study),),
         notes=(
-            f"Told apart by {told.method}. The unit is the run. r and R are 2.8 standard "
+            f"Told apart by {study.method}. The unit is the run. r and R are 2.8 standard "
             "deviations (ISO 5725-2). The last row is relative to the mean.",
         ),
     )
     page = folder / "repeatability.html"
-    odd = [] if told.mandel.empty else [_mandel(told)]
+    odd = [] if study.mandel.empty else [_mandel(study)]
     write_parts(
         page,
         kind="Repeatability",
         heading=heading,
-        verdict=repeatability_verdict(told),
+        verdict=repeatability_verdict(study),
         fine=True,
         parts=(part, *odd),
     )
     return page
 
 
-def _explanations(told: Repeatability) -> tuple[str, ...]:
+def _explanations(study: Repeatability) -> tuple[str, ...]:
     """Return text that explains r and R, and names factors with too few levels."""
-    last = told.table.iloc[-1]
-    said = [
+    last = study.table.iloc[-1]
+    texts = [
         f"Of two runs that were measured alike, 95 of 100 pairs differ by less than "
         f"{percent(float(last['repeatability_limit']))} of the mean (r); where "
-        f"{' and '.join(told.by)} change between them, by less than "
+        f"{' and '.join(study.by)} change between them, by less than "
         f"{percent(float(last['reproducibility_limit']))} (R)."
     ]
     few = [
-        f"{many(count, 'level')} of {name}" for name, count in told.levels.items() if count < FEW
+        f"{many(count, 'level')} of {name}" for name, count in study.levels.items() if count < FEW
     ]
     if few:
-        said.append(
+        texts.append(
             f"There were only {' and '.join(few)}: what lies between levels, and R with it, is a "
             "rough guess; five or more tell."
         )
-    return tuple(said)
+    return tuple(texts)
 
 
-def _components(told: Repeatability) -> Sheet:
-    names = [c for c in map(str, told.table) if c not in ("sliding_speed_m_s", "speed")]
+def _components(study: Repeatability) -> Sheet:
+    names = [c for c in map(str, study.table) if c not in ("sliding_speed_m_s", "speed")]
     heads = {
         "mean": "Mean",
         "repeatability_std": "Within",
@@ -83,17 +83,17 @@ def _components(told: Repeatability) -> Sheet:
     ]
     rows = [
         cells((row["speed"], *(row[name] for name in names)))
-        for row in told.table.to_dict("records")
+        for row in study.table.to_dict("records")
     ]
     return Sheet("Components of variance", "repeatability", ("Speed", *titles), rows)
 
 
-def _mandel(told: Repeatability) -> Part:
-    name = told.by[0]
+def _mandel(study: Repeatability) -> Part:
+    name = study.by[0]
     rows = [
         cells((row["condition"], row["sliding_speed_m_s"] * 1e6, str(row[name]),
                row["h"], row["h_limit"], row["k"], row["k_limit"]))
-        for row in told.mandel.to_dict("records")
+        for row in study.mandel.to_dict("records")
     ]  # fmt: skip
     heads = ("Condition", "Speed (µm/s)", name.capitalize(), "h", "limit", "k", "limit")
     return Part(

@@ -188,8 +188,8 @@ def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> 
     """Return the gain by a dead weight, from runs on the reference, or else from their load."""
     mine = _reference_runs(campaign, runs)
     gains = [run.get("dead_weight_gain") for run in runs if run["name"] in mine]
-    if told := [float(gain) for gain in gains if gain is not None]:
-        return float(np.mean(told))
+    if gains_known := [float(gain) for gain in gains if gain is not None]:
+        return float(np.mean(gains_known))
     weight = campaign.reference.dead_weight
     if weight is None:
         return float("nan")

@@ -29,7 +29,7 @@ class Cure:
     terminal: str = ""
     campaign: str = ""
 
-    def told(self, audience: str) -> str:
+    def message_for(self, audience: str) -> str:
         """Return the remedy worded for one audience."""
         return str(getattr(self, audience))
 
@@ -37,8 +37,8 @@ class Cure:
 class TribolabError(Exception):
     """Base of all errors that tribolab raises intentionally.
 
-    It contains the parts of a message; `told("terminal")` words it for an audience. Its text is
-    worded for a notebook. Control characters for terminals are removed.
+    It contains the parts of a message; `message_for("terminal")` words it for an audience. Its text
+    is worded for a notebook. Control characters for terminals are removed.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class TribolabError(Exception):
     >>> error = ReadError("two instruments fit", where="a.csv", cure=cure)
     >>> print(error)
     a.csv: two instruments fit; say instrument=
-    >>> error.told("terminal"), error.told("campaign")
+    >>> error.message_for("terminal"), error.message_for("campaign")
     ('a.csv: two instruments fit; say --instrument', 'a.csv: two instruments fit')
     """
 
@@ -81,17 +81,21 @@ class TribolabError(Exception):
         self.function = function
         self.cure = cure
 
-    def told(self, audience: str) -> str:
+    def message_for(self, audience: str) -> str:
         """Return the message worded for a "notebook", the "terminal" or a "campaign"."""
-        what = self.what.told(audience) if isinstance(self.what, TribolabError) else str(self.what)
+        what = (
+            self.what.message_for(audience)
+            if isinstance(self.what, TribolabError)
+            else str(self.what)
+        )
         first = self.function if audience == "notebook" else ""
-        cure = self.cure.told(audience) if isinstance(self.cure, Cure) else self.cure
+        cure = self.cure.message_for(audience) if isinstance(self.cure, Cure) else self.cure
         message = ": ".join(part for part in (first, self.where, what) if part)
         return harmless("; ".join(part for part in (message, cure) if part))
 
     def __str__(self) -> str:
         """Return the message worded for a notebook."""
-        return self.told("notebook")
+        return self.message_for("notebook")
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle all parts of the error."""
@@ -122,13 +126,13 @@ class OutputError(TribolabError):
     """Results could not be written."""
 
 
-def told(error: BaseException, audience: str) -> str:
+def message_for(error: BaseException, audience: str) -> str:
     """Return the message of an error for one audience; messages of other libraries are shortened.
 
-    >>> told(ReadError("empty", where="a.csv"), "terminal"), told(ValueError("no"), "campaign")
-    ('a.csv: empty', 'no')
+    >>> message_for(ReadError("empty", where="a.csv"), "terminal")
+    'a.csv: empty'
     """
-    return error.told(audience) if isinstance(error, TribolabError) else brief(error)
+    return error.message_for(audience) if isinstance(error, TribolabError) else brief(error)
 
 
 def harmless(text: str) -> str:

@@ -196,7 +196,7 @@ def explain(error: BaseException) -> tuple[str, str]:
     """
     name = type(error).__name__
     if isinstance(error, TribolabError):
-        return " ".join(error.told("campaign").split()), name
+        return " ".join(error.message_for("campaign").split()), name
     text = brief(error) if str(error) else ""
     if isinstance(error, OSError) and error.strerror and error.filename:
         return f"{shown(Path(str(error.filename)).name)}: {error.strerror.lower()}", name

@@ -184,6 +184,6 @@ def _fits(pair: np.ndarray, terms: list[np.ndarray], force: np.ndarray) -> np.nd
     good[good] = (scale > 0).all(axis=1)
     scale = scale[(scale > 0).all(axis=1)]
     shaped = normal[good] / scale[:, :, None] / scale[:, None, :]
-    told = np.linalg.cond(shaped) < _MAX_CONDITION
-    answer = np.linalg.solve(shaped[told], (right[good] / scale)[told][:, :, None])[:, :, 0]
-    return np.asarray(answer / scale[told])
+    solvable = np.linalg.cond(shaped) < _MAX_CONDITION
+    answer = np.linalg.solve(shaped[solvable], (right[good] / scale)[solvable][:, :, None])[:, :, 0]
+    return np.asarray(answer / scale[solvable])

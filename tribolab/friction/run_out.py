@@ -52,13 +52,13 @@ class Wave(NamedTuple):
         """Standard error that an incomplete turn leaves in the mean, averaged over the phase."""
         return float(self.amplitude * abs(np.sinc(self.turns)) / np.sqrt(2))
 
-    def stands_out(self, power: np.ndarray) -> bool:
+    def exceeds_spectrum(self, power: np.ndarray) -> bool:
         """Return whether the wave is far above the residual spectrum, from 0 to Nyquist."""
         count = self.signal.size
         cycles = np.linspace(0, count / 2, power.size)
-        beside = power[(cycles >= self.turns / 2) & (cycles <= 2 * self.turns)]
+        neighbours = power[(cycles >= self.turns / 2) & (cycles <= 2 * self.turns)]
         return bool(
-            self.signal @ self.signal / 2 > limits.MIN_WAVE_OVER_SPECTRUM.value * beside.max()
+            self.signal @ self.signal / 2 > limits.MIN_WAVE_OVER_SPECTRUM.value * neighbours.max()
         )
 
 

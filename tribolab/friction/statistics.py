@@ -302,11 +302,11 @@ def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
     repeated = np.stack([np.sum([wave.signal for wave in own], axis=0) for own in waves])
     cycles = np.linspace(0, blocks.shape[1] / 2, _SPECTRUM_FREQUENCIES)
     power = spectra_of(blocks[looked] - repeated, cycles)
-    for k, own, beside in zip(looked, waves, power, strict=True):
+    for k, own, density in zip(looked, waves, power, strict=True):
         if turns[k] < 1:
             left[k] = own[0].signal.std() * hidden_by_part(turns[k])
             continue
-        clear = [wave for wave in own if wave.stands_out(beside)]
+        clear = [wave for wave in own if wave.exceeds_spectrum(density)]
         for wave in clear:
             blocks[k] -= wave.signal
         left[k] = np.sqrt(sum(wave.left**2 for wave in clear))

@@ -251,7 +251,7 @@ def parameters_of(
     return Parameters(**parts)
 
 
-def as_given(value: Any) -> Any:
+def as_stated(value: Any) -> Any:
     """Return an object or a stated value; an array without dims becomes a number."""
     return value if isinstance(value, Liquid | Interface) else stated_value(value)
 

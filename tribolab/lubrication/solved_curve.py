@@ -73,9 +73,9 @@ def solve_curve(
     loads, speeds = checked_loads(load, contact), checked_speeds(speed, psd)
     system = with_adhesion(system, float(np.max(loads.values)), work)
     forces = [float(force) for force in np.atleast_1d(loads.values)]
-    beside: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces)
+    near_points: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces)
     if near is not None and not contact.is_round:
-        beside = near.points
+        near_points = near.points
     # if both bodies move, entrainment equals that of one body at twice the entrainment speed
     times = parameters.interface.entrained
     magnitudes, back = np.unique(times * np.abs(speeds.values), return_inverse=True)
@@ -83,7 +83,7 @@ def solve_curve(
     points: list[list[SolvedSpeed]] = []
     curves = []
     with one_thread():
-        for force, known in zip(forces, beside, strict=True):
+        for force, known in zip(forces, near_points, strict=True):
             if contact.is_round:
                 columns, strips = ball_rows(system, force, magnitudes)
                 used.append(strips)

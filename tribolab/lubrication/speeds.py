@@ -24,7 +24,7 @@ from tribolab.lubrication.sweep import (
     is_thick,
     lifted_state,
     sweep,
-    sweep_beside,
+    sweep_from_similar,
     wet_state,
 )
 
@@ -110,10 +110,10 @@ def solve_speeds(
         some = list(group)
         problem, wanted = some[0][1], [v for v, _ in some]
         states = [like.get((v, id(problem.mesh))) for v in wanted]
-        beside = [state for state in states if state is not None]
+        solved_states = [state for state in states if state is not None]
         solutions = None
-        if wanted[0] > 0 and len(beside) == len(wanted):
-            solutions = sweep_beside(problem, system.viscosity, wanted, beside)
+        if wanted[0] > 0 and len(solved_states) == len(wanted):
+            solutions = sweep_from_similar(problem, system.viscosity, wanted, solved_states)
         if solutions is None and points:
             solutions = _continue(system, force, problem, wanted, points[-1])
         if solutions is None:

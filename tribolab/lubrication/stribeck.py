@@ -13,7 +13,7 @@ from tribolab.lubrication.parameters import (
     Interface,
     Liquid,
     Solver,
-    as_given,
+    as_stated,
     parameters_of,
     renamed,
     warn_of_old,
@@ -110,7 +110,7 @@ def stribeck_curve(
     array([1.44e-06, 5.89e-06])
     """
     warn_of_old("stribeck_curve", options)
-    parameters = parameters_of(as_given(liquid), as_given(interface), solver, **options)
+    parameters = parameters_of(as_stated(liquid), as_stated(interface), solver, **options)
     return solve_curve(contact, psd, load, speed, parameters).curve
 
 

@@ -194,7 +194,7 @@ def sweep(
     return solved
 
 
-def sweep_beside(
+def sweep_from_similar(
     problem: Problem, viscosity: float, speeds: list[float], near: Sequence[State]
 ) -> list[Solution] | None:
     """Return solutions at increasing speeds, each from a similar contact; None if that fails.

@@ -100,7 +100,7 @@ def _special_attributes(system: System) -> dict[str, str | float | int]:
     """Return attributes for layers, elastic counter bodies and sealed outlets."""
     contact, liquid, factors = system.contact, system.liquid, system.factors
     balance = factors.roughness_balance
-    told = {
+    settings = {
         "thickness_m": (contact.thickness, np.inf),
         "counter_modulus_Pa": (contact.counter_modulus, np.inf),
         "outlet": (liquid.outlet, "vented"),
@@ -109,7 +109,7 @@ def _special_attributes(system: System) -> dict[str, str | float | int]:
         "slide_roll_ratio": (2 * factors.slide, 2.0),
         "roughness_balance": (np.nan if balance is None else balance, np.nan),
     }
-    return {name: value for name, (value, usual) in told.items() if str(value) != str(usual)}
+    return {name: value for name, (value, usual) in settings.items() if str(value) != str(usual)}
 
 
 def with_adhesion(

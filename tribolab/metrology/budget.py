@@ -57,7 +57,7 @@ def uncertainty_budget(
     ``u^2 = sum (c_i u_i)^2`` with the sensitivities of `contributions`, degrees of freedom by
     Welch and Satterthwaite, ``U95 = t_0.975(nu) u`` (JCGM 100:2008). The noise within the run is
     the standard error of the mean with its degrees of freedom. If one rectangular part
-    dominates, U95 is too wide, which `says` states.
+    dominates, U95 is too wide, which `caveats` states.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def uncertainty_budget(
     >>> tilt = {"tilt": {"value": "1 deg", "as": "standard"}}
     >>> uncertainty_budget(one_way, tilt).data.friction_coefficient_u.values.round(4)
     array([0.0175])
-    >>> uncertainty_budget(one_way).says
+    >>> uncertainty_budget(one_way).caveats
     'calibration not stated: statistical only'
     """
     if isinstance(friction, xr.Dataset):

@@ -151,20 +151,20 @@ def _limitations(
     unstated: Sequence[str],
 ) -> str:
     """Return what an uncertainty does not include, or overstates, as text."""
-    said = [] if any(name in known for name in names) else [_NOT_STATED]
-    said += [
+    texts = [] if any(name in known for name in names) else [_NOT_STATED]
+    texts += [
         f"calibration of {name or 'an instrument without a name'} not stated" for name in unstated
     ]
     if missing:
         left = ", ".join(part_words(name) for name in missing)
-        said.append(f"not counted, because no normal force was recorded: {left}")
+        texts.append(f"not counted, because no normal force was recorded: {left}")
     with np.errstate(divide="ignore", invalid="ignore"):
         share = parts**2 / np.sum(parts**2, axis=0)
     for name, row in zip(names, share, strict=True):
         stated = known[name].distribution if name in known else ""
         if stated in _RECTANGULAR and row.size and np.nanmedian(row) > _DOMINANT:
-            said.append(f"too wide, because one rectangular part dominates: {part_words(name)}")
-    return "; ".join(said)
+            texts.append(f"too wide, because one rectangular part dominates: {part_words(name)}")
+    return "; ".join(texts)
 
 
 def part_name(part: str) -> str:

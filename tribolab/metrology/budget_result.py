@@ -37,7 +37,7 @@ class UncertaintyBudget:
         return str(self.data["friction_coefficient"].dims[0])
 
     @property
-    def says(self) -> str:
+    def caveats(self) -> str:
         """Omissions of the uncertainty, as text; "" if it is complete."""
         return str(self.data.attrs.get("uncertainty_says", ""))
 
@@ -90,7 +90,7 @@ class UncertaintyBudget:
             for end in ("", "_u", "_dof", "_U95")
         )
         whole = {"part": "combined", "u": u, "unit": "1", "stated": "", "varies": "", "dof": nu}
-        whole |= {"sensitivity": np.nan, "contribution": u, "share": 1.0, "source": self.says}
+        whole |= {"sensitivity": np.nan, "contribution": u, "share": 1.0, "source": self.caveats}
         table = pd.DataFrame([*rows, whole]).set_index("part")
         table.attrs = {"friction_coefficient": mu, "U95": wide, "k": float(coverage_factor(nu))}
         return table
@@ -112,6 +112,6 @@ class UncertaintyBudget:
         """Return HTML of a typical value with its uncertainty, omissions, and the table."""
         table = self.table()
         mu, wide = table.attrs["friction_coefficient"], table.attrs["U95"]
-        says = f"<br>{self.says}" if self.says else ""
+        note = f"<br>{self.caveats}" if self.caveats else ""
         shown = table.to_html(float_format=lambda number: f"{number:.3g}")
-        return f"<p><b>µ = {mu:.4g} ± {wide:.2g}</b> (95 %, the typical value){says}</p>{shown}"
+        return f"<p><b>µ = {mu:.4g} ± {wide:.2g}</b> (95 %, the typical value){note}</p>{shown}"

@@ -88,9 +88,9 @@ def dead_weight_gain(
     for piece in np.split(np.arange(values.size), ends):
         inner = piece[int(_TRIM * piece.size) : piece.size - int(_TRIM * piece.size)]
         if inner.size >= _MIN_SAMPLES:
-            told = estimate_of(time[inner], values[inner])
-            parts[bool(loaded[inner[0]])].append((told.mean, told.u95 / NORMAL))
-            noise.append(told.std)
+            estimate = estimate_of(time[inner], values[inner])
+            parts[bool(loaded[inner[0]])].append((estimate.mean, estimate.u95 / NORMAL))
+            noise.append(estimate.std)
     if not parts[True] or not parts[False] or high - low < _MIN_STEP * float(np.median(noise)):
         raise AnalysisError(
             "no step of a weight that is put on or taken off is seen: record some seconds without "

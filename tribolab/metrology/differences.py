@@ -148,20 +148,20 @@ def differences_of_groups(
         _points(first, second, own) for (first, second), own in zip(groups, terms, strict=True)
     ]
     level = 1 - (1 - alpha) ** (1 / len(groups))
-    told = [
+    comparisons = [
         _adjust_jointly(*pair, own, at, level, seed)
         for pair, own, at in zip(groups, terms, points, strict=True)
     ]
     alone = [at.p_value for at in points]
     freedom = np.concatenate([at.degrees_of_freedom for at in points])
     of_each = special.stdtrit(freedom, 1 - alpha / 2)
-    adjusted = 1 - (1 - np.concatenate([own for own, _, _ in told])) ** len(groups)
+    adjusted = 1 - (1 - np.concatenate([own for own, _, _ in comparisons])) ** len(groups)
     adjusted = np.where(np.isnan(np.concatenate(alone)), np.nan, adjusted)
     return Differences(
         **{name: np.concatenate([getattr(at, name) for at in points]) for name in _OF_POINTS},
         adjusted_p_value=np.fmax(adjusted, np.concatenate(alone)),
-        factor=np.fmax(np.concatenate([factor for _, factor, _ in told]), of_each),
-        methods=tuple(method for _, _, method in told),
+        factor=np.fmax(np.concatenate([factor for _, factor, _ in comparisons]), of_each),
+        methods=tuple(method for _, _, method in comparisons),
     )
 
 

@@ -198,8 +198,8 @@ def _smallest(
     """Return the smallest p of all points for each rotation of the runs (run, point)."""
     total = sum(counts)
     columns = np.concatenate([np.ones((total, 1)), np.eye(total)[:, :-1]], axis=1)
-    beside = np.linalg.qr(columns)[0][:, 1:]  # (run, direction): all directions except the mean
-    turned = beside @ (turns @ (beside.T @ values))
+    directions = np.linalg.qr(columns)[0][:, 1:]  # (run, direction): all directions except the mean
+    turned = directions @ (turns @ (directions.T @ values))
     means, squares = [], []
     for part, count in zip(np.split(turned, [counts[0]], axis=1), counts, strict=True):
         means.append(part.mean(axis=1))

@@ -48,9 +48,9 @@ class SegmentReadings:
         (1/N_forward - 1/N_backward)/2 of its pair [1/N]; 0 without one.
     middle
         Middle of the loop minus the unloaded zero [N].
-    zero_told, normal_zero_told
+    zero_known, normal_zero_known
         Whether the zeros were measured in the run; their errors are then in the noise.
-    drift_told
+    drift_known
         Whether the drift of the zero was measured from the loops.
     middle_is
         Interpretation of the middle of the loops; "" without loops.
@@ -62,9 +62,9 @@ class SegmentReadings:
     both_ways: np.ndarray
     inverse_load_change: np.ndarray
     middle: np.ndarray
-    zero_told: np.ndarray
-    normal_zero_told: np.ndarray
-    drift_told: bool
+    zero_known: np.ndarray
+    normal_zero_known: np.ndarray
+    drift_known: bool
     middle_is: str
 
 
@@ -151,9 +151,9 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
     mu, one_way = at.mu, ~at.both_ways
     per_load = 1 / np.where(at.load > 0, at.load, np.nan)
     u = {name: entry.standard for name, entry in known.items()}
-    zero = np.where(one_way & ~at.zero_told, at.direction * per_load, 0.0)
-    normal_zero = np.where(at.normal_zero_told, 0.0, -mu * per_load)
-    drift = np.where(at.both_ways & (not at.drift_told), per_load / 2, 0.0)
+    zero = np.where(one_way & ~at.zero_known, at.direction * per_load, 0.0)
+    normal_zero = np.where(at.normal_zero_known, 0.0, -mu * per_load)
+    drift = np.where(at.both_ways & (not at.drift_known), per_load / 2, 0.0)
     sensitivity = {
         "friction_gain": mu,
         "normal_gain": -mu,

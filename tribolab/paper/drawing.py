@@ -28,39 +28,39 @@ def _listed(parts: Iterable[str]) -> str:
 def paper_spectra(data: PaperData) -> FigureAndText:
     """Draw the stand-in spectra."""
     psds = data.dry("psd")
-    said = _listed(
+    text = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.4g} µm, slope {rms_slope(psd):.3g}"
         for name, psd in psds.items()
     )
-    return plot.spectra(psds, surfaces=SURFACES), said
+    return plot.spectra(psds, surfaces=SURFACES), text
 
 
 def scanned_spectra(data: PaperData) -> FigureAndText:
     """Draw spectra from the analysis of the simulated profiles."""
     psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
-    said = _listed(
+    text = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"
         for name, psd in psds.items()
     )
-    return plot.spectra(psds, surfaces=SURFACES), said
+    return plot.spectra(psds, surfaces=SURFACES), text
 
 
 def paper_contact_area(data: PaperData) -> FigureAndText:
     """Draw A/A0 over pressure without adhesion."""
     loads = data.dry("loads")
-    said = _listed(
+    text = _listed(
         f"{name}: A/A0 {float(contact.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
         f"{1e-6 * float(contact.pressure[0]):.3g} MPa"
         for name, contact in loads.items()
     )
     figure = plot.contact_area(data.dry("contact"), loads[SURFACES[0]], surfaces=SURFACES)
-    return figure, said
+    return figure, text
 
 
 def paper_effective_work(data: PaperData) -> FigureAndText:
     """Draw gamma_eff/gamma_0 over magnification."""
     works = data.dry("effective_work")
-    said = _listed(
+    text = _listed(
         f"{name}: "
         + ", ".join(
             f"{medium} {_ends(work.effective_work_of_adhesion.sel(medium=medium) / MEDIA[medium])}"
@@ -69,7 +69,7 @@ def paper_effective_work(data: PaperData) -> FigureAndText:
         for name, work in works.items()
     )
     figure = plot.effective_work(works, relative_to=MEDIA, surfaces=SURFACES)
-    return figure, f"From magnification 1 to the highest: {said}"
+    return figure, f"From magnification 1 to the highest: {text}"
 
 
 def _ends(line: xr.DataArray) -> str:
@@ -79,7 +79,7 @@ def _ends(line: xr.DataArray) -> str:
 def paper_adhesive_area(data: PaperData) -> FigureAndText:
     """Draw A/A0 over pressure with adhesion."""
     loads = data.dry("loads")
-    said = _listed(
+    text = _listed(
         f"{name}: "
         + ", ".join(
             f"{medium} {float(contact.contact_area_ratio.sel(medium=medium)[0]):.3g}"
@@ -90,7 +90,7 @@ def paper_adhesive_area(data: PaperData) -> FigureAndText:
     )
     contacts, adhesions = data.dry("contact"), data.dry("adhesion")
     figure = plot.adhesive_area(contacts, adhesions, loads[SURFACES[0]], surfaces=SURFACES)
-    return figure, said
+    return figure, text
 
 
 def _friction_of(curves: Iterable[xr.Dataset]) -> str:
@@ -119,11 +119,11 @@ def paper_viscoelastic(data: PaperData) -> FigureAndText:
     """Draw mu_visc(v)."""
     rubbers = data.dry("rubber")
     rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
-    said = _listed(
+    text = _listed(
         f"{name}: µ at most {number(float(rubber.friction_coefficient.max()), 2)}"
         for name, rubber in rubbers.items()
     )
-    return plot.viscoelastic(rubbers, surfaces=SURFACES), said
+    return plot.viscoelastic(rubbers, surfaces=SURFACES), text
 
 
 def dry_shear_stress(data: PaperData) -> FigureAndText:
@@ -140,29 +140,29 @@ def dry_shear_stress(data: PaperData) -> FigureAndText:
             }
         )
     means = {name: float(stress.shear_stress.mean()) for name, stress in stresses.items()}
-    said = [f"{name}: {mean / 1e6:.3g} MPa on average" for name, mean in means.items()]
-    said.append(f"Sb-R over Sb-S: {means['Sb-R'] / means['Sb-S']:.3g}")
+    text = [f"{name}: {mean / 1e6:.3g} MPa on average" for name, mean in means.items()]
+    text.append(f"Sb-R over Sb-S: {means['Sb-R'] / means['Sb-S']:.3g}")
     largest = max(
         float((known.shear_stress_std / known.shear_stress).max()) for known in stresses.values()
     )
-    said.append(f"standard deviation at most {100 * largest:.2g} % of it")
-    return plot.shear_stress_over_speed(stresses, surfaces=SURFACES), _listed(said)
+    text.append(f"standard deviation at most {100 * largest:.2g} % of it")
+    return plot.shear_stress_over_speed(stresses, surfaces=SURFACES), _listed(text)
 
 
 def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> FigureAndText:
     traces = [data.trace(*stroke) for stroke in wanted]
-    said = []
+    text = []
     for trace in traces:
         if trace.friction is None:
             continue
         stroke = trace.friction.isel(segment=trace.segment)
         mean, spread = (float(stroke[f"friction_coefficient{end}"]) for end in ("", "_std"))
-        said.append(f"{trace.label}: µ = {number(mean)} (standard deviation {number(spread, 2)})")
+        text.append(f"{trace.label}: µ = {number(mean)} (standard deviation {number(spread, 2)})")
     ends = [
         float((row.trimmed_stop - row.trimmed_start) * row.sliding_speed)
         for row in (trace.segments.isel(segment=trace.segment) for trace in traces)
     ]
-    return plot.slip_traces(traces, SURFACES, longest=min(ends)), _listed(said)
+    return plot.slip_traces(traces, SURFACES, longest=min(ends)), _listed(text)
 
 
 def dry_traces(data: PaperData) -> FigureAndText:
@@ -216,13 +216,13 @@ def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
 
 def paper_shear_stress(data: PaperData) -> FigureAndText:
     """Draw sigma_f over load, as fitted and corrected."""
-    said = _listed(
+    text = _listed(
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
         f"{fit['shear_stress_Pa'] / 1e6:.3g} MPa, "
         f"in the adhesive area {fit['corrected_shear_stress_Pa'] / 1e6:.3g} MPa"
         for fit in data.fits.to_dict("records")
     )
-    return plot.shear_stress(data.fits, surfaces=SURFACES), said
+    return plot.shear_stress(data.fits, surfaces=SURFACES), text
 
 
 def smooth_and_theory(data: PaperData) -> FigureAndText:
@@ -233,22 +233,22 @@ def smooth_and_theory(data: PaperData) -> FigureAndText:
     v = model["sliding_speed"]
     model = model.isel(sliding_speed=np.flatnonzero((v >= _BOUNDARY) & (v < 3e-2)))
     highest = float(model.friction_coefficient.max())
-    said = f" The theory reaches µ = {highest:.3g} at {speed_text(float(v.min()))}."
+    text = f" The theory reaches µ = {highest:.3g} at {speed_text(float(v.min()))}."
     return plot.stribeck(measured, model, surfaces=SURFACES, errors="std"), _friction_of(
         measured
-    ) + said
+    ) + text
 
 
 def separation(data: PaperData) -> FigureAndText:
     """Draw p_cont over separation."""
     tables = data.dry("separation")
-    said = _listed(
+    text = _listed(
         f"{name}: falls by a factor e in "
         f"{d.attrs['decay_length_m'] / d.attrs['rms_roughness_m']:.3g} h_rms = "
         f"{1e6 * d.attrs['decay_length_m']:.3g} µm"
         for name, d in tables.items()
     )
-    return plot.contact_separation(tables, surfaces=SURFACES), said
+    return plot.contact_separation(tables, surfaces=SURFACES), text
 
 
 def factors(data: PaperData) -> FigureAndText:
@@ -257,19 +257,19 @@ def factors(data: PaperData) -> FigureAndText:
     closed = [
         d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in factors.values()
     ]
-    said = f"Flow stops at a mean separation of {span(closed)} h_rms."
-    return plot.lubrication_factors(factors, surfaces=SURFACES), said
+    text = f"Flow stops at a mean separation of {span(closed)} h_rms."
+    return plot.lubrication_factors(factors, surfaces=SURFACES), text
 
 
 def paper_friction_factor_effect(data: PaperData) -> FigureAndText:
     """Draw mu(v) at the highest load with and without friction factors."""
     force = data.forces[-1]
     pairs = {name: data.model(name, force) for name in ROUGH}
-    said = _listed(
+    text = _listed(
         f"{name}, {force_text(force)}: they raise µ by at most {_largest_rise(curve)}"
         for name, curve in pairs.items()
     )
-    return plot.friction_factor_effect(pairs, scale="linear", surfaces=SURFACES), said
+    return plot.friction_factor_effect(pairs, scale="linear", surfaces=SURFACES), text
 
 
 def _largest_rise(curve: xr.Dataset) -> str:
@@ -283,7 +283,7 @@ def _largest_rise(curve: xr.Dataset) -> str:
 def profiles(data: PaperData, name: str) -> FigureAndText:
     """Draw profiles across the contact of a surface."""
     across = data.read("wet", name, "profiles")
-    said = _listed(
+    text = _listed(
         f"{speed_text(float(v))}: smallest separation "
         f"{1e6 * float(across.separation.sel(sliding_speed=v).min()):.3g} µm, "
         f"pressures of contact and fluid at most "
@@ -294,7 +294,7 @@ def profiles(data: PaperData, name: str) -> FigureAndText:
         + " MPa"
         for v in across.sliding_speed.values
     )
-    return plot.film_profiles(across), said
+    return plot.film_profiles(across), text
 
 
 def bars(data: PaperData, name: str) -> FigureAndText:
@@ -303,5 +303,5 @@ def bars(data: PaperData, name: str) -> FigureAndText:
     smallest, largest = (
         end(float(end(c.friction_coefficient_std.values)) for c in measured) for end in (min, max)
     )
-    said = f" Standard deviation from {smallest:.2g} to {largest:.2g}."
-    return plot.friction_spread(measured, surfaces=SURFACES), _friction_of(measured) + said
+    text = f" Standard deviation from {smallest:.2g} to {largest:.2g}."
+    return plot.friction_spread(measured, surfaces=SURFACES), _friction_of(measured) + text

@@ -63,7 +63,7 @@ class PlannedFigure:
         condition.
     wide
         Whether it needs the full width of the page.
-    told
+    has_text
         Whether its numbers are repeated in the caption.
     """
 
@@ -75,7 +75,7 @@ class PlannedFigure:
     draw: Callable[[PaperData], FigureAndText]
     claims: tuple[tuple[str, str, str], ...] = ()
     wide: bool = False
-    told: bool = False
+    has_text: bool = False
 
     @property
     def file(self) -> str:
@@ -152,7 +152,7 @@ FIGURES = (
         "Simulated friction times nominal pressure over the computed dry contact area with "
         "adhesion; bars: standard deviation while sliding. The ratio is what the rig was given, "
         "except for the areas, which are computed:",
-        drawing.dry_shear_stress, (("effective_shear_stress_ratio", "", ""),), told=True,
+        drawing.dry_shear_stress, (("effective_shear_stress_ratio", "", ""),), has_text=True,
     ),
     PlannedFigure(
         "dry_traces", "dry", "Dry friction over sliding distance", (SIMULATED,), _SLIP,
@@ -228,7 +228,7 @@ FIGURES = (
         "friction_factor_effect", "factors", "With and without friction factors", (COMPUTED,),
         "At the highest load with the printed shear stress. Full: with them; dashed: without. The "
         "paper draws Sb-R alone, with a small effect, and finds none to be seen on Sb-S. Here:",
-        drawing.paper_friction_factor_effect, told=True,
+        drawing.paper_friction_factor_effect, has_text=True,
     ),
     PlannedFigure(
         "profiles_sb-s", "profiles", "Across the contact of Sb-S at 310 N/m", (COMPUTED,),
@@ -274,9 +274,9 @@ def draw_paper_figure(task: DrawTask) -> Json:
     """Draw a figure into the results and return its record."""
     known = BY_NAME[task.name]
     with DRAWING:
-        figure, said = known.draw(task.data)
-        alt = f"{known.title} ({' and '.join(known.kinds)}). {said}"
-        caption = f"{known.caption} {said}" if known.told else known.caption
+        figure, text = known.draw(task.data)
+        alt = f"{known.title} ({' and '.join(known.kinds)}). {text}"
+        caption = f"{known.caption} {text}" if known.has_text else known.caption
         data = write_figure(figure, task.data.folder, known.file)
         record = asdict(FigureRecord(known.file, data, caption, alt))
     del record["kind"]  # the figure belongs to a section

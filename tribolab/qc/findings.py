@@ -143,15 +143,17 @@ class Findings:
         by_check: dict[str, set[str]] = {}
         for check, result in self.results:
             by_check.setdefault(check.name, set()).add(result.status)
-        objecting = {n for n, told in by_check.items() if told & {"suspect", "fail", "error"}}
-        passed = {n for n, told in by_check.items() if "pass" in told} - objecting
+        objecting = {
+            n for n, statuses in by_check.items() if statuses & {"suspect", "fail", "error"}
+        }
+        passed = {n for n, statuses in by_check.items() if "pass" in statuses} - objecting
         skipped = len(by_check) - len(objecting) - len(passed)
         parts = [f"{Count(len(passed)):check|checks} passed"]
         parts += [f"{len(objecting)} objected"] if objecting else []
         parts += [f"{skipped} had nothing to look at"] if skipped else []
         return f"{self.name}: {self.status} ({', '.join(parts)})"
 
-    def told(self, everything: bool = False) -> list[tuple[str, str, str, str]]:
+    def messages(self, everything: bool = False) -> list[tuple[str, str, str, str]]:
         """Return status, check, message and remedy of each objection and note, worst first.
 
         With `everything`, the results of all checks.
@@ -161,7 +163,7 @@ class Findings:
     def __repr__(self) -> str:
         """Return the text of `tribolab check`: summary, then objections and notes with remedies."""
         lines = [self.summary]
-        for status, check, message, cure in self.told():
+        for status, check, message, cure in self.messages():
             lines.append(f"{status}  {check}  {message}")
             lines += [f"    {cure}"] if cure else []
         return "\n".join(lines)
@@ -174,19 +176,19 @@ class Findings:
         objections = self.table["status"].isin(("suspect", "fail", "error"))
         noted = np.array([row["noted"] for row in self.rows], dtype=bool)
         columns = ["check", "status", "variable", "message", "cure"]
-        told = self.table.assign(status=self.table["status"].where(~noted, "note"))[columns]
-        told = told[objections | noted]
+        listed = self.table.assign(status=self.table["status"].where(~noted, "note"))[columns]
+        listed = listed[objections | noted]
         look = {"text-align": "left", "vertical-align": "top"}
         short, long = (
             rows.style.hide()
             .format(na_rep="", escape="html")
             .set_properties(subset=None, **look)
             .to_html()
-            for rows in (told, self.table.drop(columns="name"))
+            for rows in (listed, self.table.drop(columns="name"))
         )
         counted = ", ".join(f"{count} {status}" for status, count in self.count().items() if count)
         return (
-            f"<p><b>{html.escape(self.name)}: {self.status}</b></p>{short if len(told) else ''}"
+            f"<p><b>{html.escape(self.name)}: {self.status}</b></p>{short if len(listed) else ''}"
             f"<details><summary>everything that was asked: {counted}</summary>{long}</details>"
         )
 

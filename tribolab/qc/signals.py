@@ -20,8 +20,8 @@ from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 _BLOCK = 64  # samples with one noise level; steps of a run may be as short
 _NOISE_RATIO = 1.6  # ratio of noise levels that chance does not produce in so few samples
 
-_HELD = 3  # samples per reading of a slowly refreshed channel
-_MAX_HELD = 1 << 24  # samples; channels are not recorded much faster than they are refreshed
+_SAMPLES_PER_READING = 3  # samples per reading of a slowly refreshed channel
+_MAX_EXAMINED = 1 << 24  # samples; channels are not recorded much faster than they are refreshed
 
 
 def missing(values: np.ndarray) -> np.ndarray:
@@ -103,8 +103,8 @@ def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, 
         second = np.nan_to_num(np.abs(np.diff(part, 2, **ends)))
         levels[first:last] = medians_of_rows(second.reshape(-1, length))
     quiet = np.quantile(levels, 0.25)
-    beside = np.pad(levels, 1, mode="edge")
-    loudest = np.maximum(beside[:-2], beside[2:])
+    padded = np.pad(levels, 1, mode="edge")
+    loudest = np.maximum(padded[:-2], padded[2:])
     levels = np.where(loudest > _NOISE_RATIO * levels, loudest, levels)
     return np.maximum(levels, quiet) / (0.6745 * np.sqrt(6.0)), length
 
@@ -218,9 +218,9 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     ndarray
         suspect at saturated samples, good elsewhere.
     """
-    held = _readings(values)
-    if held is not None:  # refreshed more slowly than recorded: each reading counts once
-        levels, number = held
+    readings = _readings(values)
+    if readings is not None:  # refreshed more slowly than recorded: each reading counts once
+        levels, number = readings
         return saturation(levels, excess, fewest)[number]
     known = sum(np.count_nonzero(values[a:b] == values[a:b]) for a, b in pieces(0, values.size))
     if known < 32 or np.nanmin(values) == np.nanmax(values):
@@ -245,11 +245,11 @@ def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
 
     Returns None unless most readings repeat: in a clipped signal only those at the end do.
     """
-    if values.size < 2 or values.size > _MAX_HELD:
+    if values.size < 2 or values.size > _MAX_EXAMINED:
         return None
     changes = np.concatenate([[True], values[1:] != values[:-1]])
     lengths = np.diff(np.append(np.flatnonzero(changes), values.size))
-    if np.median(lengths) < _HELD:
+    if np.median(lengths) < _SAMPLES_PER_READING:
         return None
     return values[changes], np.cumsum(changes) - 1
 

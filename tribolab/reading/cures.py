@@ -59,14 +59,16 @@ PERHAPS_PROFILE = Cure(
 
 def either(first: str, other: Cure) -> Cure:
     """Return a way to mend something that is the same for all, and another."""
-    return Cure(*(f"{first}, or {other.told(who)}" for who in ("notebook", "terminal", "campaign")))
+    return Cure(
+        *(f"{first}, or {other.message_for(who)}" for who in ("notebook", "terminal", "campaign"))
+    )
 
 
 def joined(first: Cure, second: Cure) -> Cure:
     """Return two ways to mend something as one."""
     return Cure(
         *(
-            f"{first.told(audience)}; {second.told(audience)}"
+            f"{first.message_for(audience)}; {second.message_for(audience)}"
             for audience in ("notebook", "terminal", "campaign")
         )
     )

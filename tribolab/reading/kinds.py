@@ -47,8 +47,8 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
     try:
         file = peek(path)
     except ReadError:  # no file, an empty one, or a format of profilometers
-        return "scan" if _holds_map(path) else "unknown"
-    if file.format != "text" and _holds_map(path):
+        return "scan" if _is_map(path) else "unknown"
+    if file.format != "text" and _is_map(path):
         return "scan"
     if file.format == "netcdf":
         return "run"
@@ -60,7 +60,7 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
         return "unknown"
 
 
-def _holds_map(path: Path) -> bool:
+def _is_map(path: Path) -> bool:
     """Whether a file of named arrays contains a map, or profiles side by side."""
     try:
         check_regular(path)

@@ -102,8 +102,8 @@ def find_table(
             if needed := kind.needed(columns):
                 return _table_below(rows, place, needed, decimal)
     # what a file that is no such table holds is not told: it may be anything
-    said = shown(", ".join(seen), 200) or "none of them"
-    raise ReadError(f"{path.name}: columns for {kind.wanted}; it has {said}")
+    names = shown(", ".join(seen), 200) or "none of them"
+    raise ReadError(f"{path.name}: columns for {kind.wanted}; it has {names}")
 
 
 def _columns(row: Row, kind: TableKind) -> dict[str, Column]:
@@ -190,7 +190,7 @@ def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], de
     first = numeric[0] if numeric else len(rows)
     below = (row for row in rows[place + 1 : first] if any(cell.strip() for cell in row))
     units = next((row for row in below if not all(map(_NUMBER.fullmatch, row))), [])
-    told = {
+    found = {
         concept: column
         if column.unit or named[concept].place >= len(units)
         # a unit may stand in brackets, or bare
@@ -198,13 +198,13 @@ def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], de
         for concept, column in columns.items()
     }
     labels = " ".join(rows[place])
-    gs = normalise_label(told.get("storage_modulus", told.get("complex_modulus", _NONE)).label)
+    gs = normalise_label(found.get("storage_modulus", found.get("complex_modulus", _NONE)).label)
     tensile = gs.startswith("e") or "tensile" in labels.lower()
     above = " ".join(" ".join(row) for row in rows[:place])
     turned = _TURNED.search(above) and not _PRESSED.search(above)
     shear = True if gs.startswith("g") or _SHEAR.search(labels) or turned else None
     shear = False if tensile else shear
-    return Table(told, [rows[n] for n in numeric], shear, dec)
+    return Table(found, [rows[n] for n in numeric], shear, dec)
 
 
 def _where_numbers_are(

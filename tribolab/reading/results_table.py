@@ -88,11 +88,11 @@ def find_other_test(text: str) -> str:
             labels = [label.strip(' "') for label in between.split(_BLANKS.sub("  ", line))]
             if any(map(_NUMBER.fullmatch, labels)):
                 continue
-            held = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
-            if held & _OF_FRICTION:
+            found = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
+            if found & _OF_FRICTION:
                 return ""
             for test, needed in _TESTS.items():
-                if needed <= held:
+                if needed <= found:
                     return test
     return ""
 

@@ -116,10 +116,10 @@ def read(
     >>> [run.attrs["source"] for run in read(folder / "*_force.csv")]
     ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_02_force.csv']
     """
-    said: Reading = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
-    said["moving_mass"] = moving_mass
+    options: Reading = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
+    options["moving_mass"] = moving_mass
     if not isinstance(path, PathLike) or not (is_pattern(path) or Path(path).is_dir()):
-        return read_run(path, instrument, **said)
+        return read_run(path, instrument, **options)
     files = files_with("run", path) if instrument is None else matching(path)
     runs = group_files(files, instrument) if pair else [[file] for file in files]
-    return [read_run(logs, instrument, **said) for logs in runs]
+    return [read_run(logs, instrument, **options) for logs in runs]

@@ -187,14 +187,14 @@ def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
         dialect = None if any(units.values()) else _drafted(file, error)
         if dialect is None:
             raise
-        told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(file)}
+        origin = {"instrument": DRAFTED, "to_keep_it": how_to_keep(file)}
         scans = read_known_scans([file], dialect)
-        return [_doubted(scan.assign_attrs(told), doubt_about_heights(scan)) for scan in scans]
+        return [_doubted(scan.assign_attrs(origin), doubt_about_heights(scan)) for scan in scans]
 
 
 def _doubted(scan: xr.Dataset, doubt: str) -> xr.Dataset:
-    said = "; ".join(filter(None, [scan.attrs.get("doubtful", ""), doubt]))
-    return scan.assign_attrs(doubtful=said) if said else scan
+    doubts = "; ".join(filter(None, [scan.attrs.get("doubtful", ""), doubt]))
+    return scan.assign_attrs(doubtful=doubts) if doubts else scan
 
 
 def _drafted(file: Path, error: ReadError) -> Dialect | None:

@@ -46,7 +46,7 @@ _Reader = Callable[[Instrument | None, bool], _Run]
 def read_run(
     path: PathLike | Sequence[PathLike],
     instrument: Instrument | None = None,
-    **said: Unpack[runs.Reading],
+    **options: Unpack[runs.Reading],
 ) -> xr.Dataset:
     """Read one run; a file that no dialect knows is read by one that is drafted from it.
 
@@ -73,7 +73,7 @@ def read_run(
     paths = [Path(path)] if isinstance(path, PathLike) else [Path(name) for name in path]
 
     def read(dialect: Instrument | None, drafted: bool) -> xr.Dataset:
-        how: runs.Reading = {**said, "pair": False} if drafted else said
+        how: runs.Reading = {**options, "pair": False} if drafted else options
         return runs.read_run(path, dialect, **how)
 
     return read_unchanged(paths, lambda: _by_any(paths, instrument, read))
@@ -97,7 +97,7 @@ def read_log(
 
 def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run]) -> _Run:
     """Read by the dialect that is known, else by one that is drafted from the file."""
-    told: dict[str, str] = {}
+    attrs: dict[str, str] = {}
     try:
         return read(instrument, False)
     except UnknownFileError as error:
@@ -105,12 +105,12 @@ def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run
             raise  # some files of the run are a known instrument's
         dialect = _drafted(paths[0], error)
     except LacksError as error:
-        other = None if instrument is not None or len(paths) > 1 else _says_all(paths[0])
+        other = None if instrument is not None or len(paths) > 1 else _complete_dialect(paths[0])
         if other is None:
             raise
-        dialect, told = other, {"known_layout_lacks": str(error.what)}
+        dialect, attrs = other, {"known_layout_lacks": str(error.what)}
     run = read(dialect, True)
-    run.attrs.update(_told(paths[0]) | told)
+    run.attrs.update(_guess_attrs(paths[0]) | attrs)
     return run
 
 
@@ -118,12 +118,12 @@ def is_run_file(path: Path, *, by_name: bool = True) -> bool:
     """Whether a file that no dialect knows holds a run, by names in its header or at all."""
     draft = draft_of(path)
     if draft is None:
-        return _holds_signals(path)
+        return _has_signals(path)
     in_columns = draft.layout is not None and draft.layout.held is not None  # which have names
     return draft.kind == "run" and (draft.named or not by_name or in_columns)
 
 
-def _holds_signals(path: Path) -> bool:
+def _has_signals(path: Path) -> bool:
     """Whether a file is of a format that no profilometer writes."""
     try:
         return peek(path).format in ("tdms", "parquet", "feather")
@@ -147,10 +147,10 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     except (ReadError, OSError, ImportError) as reason:
         if peek(path).format != "text" or not isinstance(reason, ReadError):
             raise error from reason
-        said = str(reason.what).removeprefix(f"{path}: ")
-        raise UnknownFileError(f"{error.what}: {said}", where=path, cure=error.cure) from reason
-    if (unsaid := left_open(draft)) is not None:
-        raise unsaid from error
+        cause = str(reason.what).removeprefix(f"{path}: ")
+        raise UnknownFileError(f"{error.what}: {cause}", where=path, cure=error.cure) from reason
+    if (gap := left_open(draft)) is not None:
+        raise gap from error
     if draft.kind == "table" and measures_other_things(draft):
         raise ReadError(draft.answer, where=path) from error
     if draft.kind == "table" and draft.labels:
@@ -188,8 +188,8 @@ def left_open(draft: Draft) -> ReadError | None:
         return None
     draft, _ = leave_out_doubtful(draft)
     asked, known = questions(draft), understood_columns(draft)
-    if unsaid := lacks_distance(draft):
-        return GuessedError(draft.path, asked, cures.SURFACE, unsaid, known)
+    if missing := lacks_distance(draft):
+        return GuessedError(draft.path, asked, cures.SURFACE, missing, known)
     if asked or lacks_friction(draft):
         lacks, options = missing_words(draft), missing_options(draft)
         return GuessedError(draft.path, asked, cures.RUN, lacks, known, options)
@@ -210,7 +210,7 @@ def lacks_distance(draft: Draft) -> list[str]:
     return [understood.lacks] if understood is not None and understood.lacks else []
 
 
-def _says_all(path: Path) -> Dialect | None:
+def _complete_dialect(path: Path) -> Dialect | None:
     """Return the dialect that a file's own header makes, if it leaves nothing open."""
     # late: starting stays quick
     from tribolab.reading.unknown.proposal.questions import missing_words, questions
@@ -248,23 +248,23 @@ def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft | ReadError:
         return error
 
 
-def _told(path: Path) -> dict[str, str]:
+def _guess_attrs(path: Path) -> dict[str, str]:
     # late: starting stays quick
     from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
     from tribolab.reading.unknown.proposal.questions import how_to_keep, without_unit_and_missed
 
-    told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
+    attrs = {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
     draft = draft_of(path)
     if draft is None:
-        return told
+        return attrs
     draft, left = leave_out_doubtful(draft)
-    told |= {"left_out": "; ".join(left)} if left else {}
+    attrs |= {"left_out": "; ".join(left)} if left else {}
     missed = without_unit_and_missed(draft)
-    told |= {"without_unit": "; ".join(missed)} if missed else {}
-    return {**told, "drafted_layout": _checksum(draft)}
+    attrs |= {"without_unit": "; ".join(missed)} if missed else {}
+    return {**attrs, "drafted_layout": _checksum(draft)}
 
 
 def _checksum(draft: Draft) -> str:
     """Return what files of one layout have in common: the dialect, but for its name."""
-    said = "" if draft.dialect is None else draft.dialect.model_dump_json(exclude={"name", "title"})
-    return hashlib.sha256(said.encode()).hexdigest()[:16]
+    text = "" if draft.dialect is None else draft.dialect.model_dump_json(exclude={"name", "title"})
+    return hashlib.sha256(text.encode()).hexdigest()[:16]

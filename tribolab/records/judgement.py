@@ -112,11 +112,11 @@ def why(run: Mapping[str, Any]) -> str:
 
 def _decision_text(run: Mapping[str, Any], action: str) -> str:
     """Return who rejected or accepted a run, against which objections, and why."""
-    said = [
+    texts = [
         f"{run['quality']} by {row['author']}: {row['reason']}"
         for row in run["decisions"]
         if row["action"] == action
     ]
     spite = [row["check"] for row in run["checks"] if row["decision"].startswith("accepted")]
     end = f" (in spite of {', '.join(dict.fromkeys(spite))})" if spite else ""
-    return "; ".join(dict.fromkeys(said)) + end
+    return "; ".join(dict.fromkeys(texts)) + end

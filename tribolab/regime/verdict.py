@@ -129,8 +129,8 @@ def sliding_mode(
     curve = _curve(measured, model, slip, known.fluid)
     numbers = _numbers(measured, model, curve, known) | _count_in_band(measured, band)
     weighed = tuple(
-        told
-        for told in (
+        each
+        for each in (
             evidence.traces(slip),
             evidence.macroscopic_adhesion(known),
             evidence.vanishing_adhesion(known),
@@ -142,7 +142,7 @@ def sliding_mode(
             evidence.misfit(numbers),
             evidence.uniform_slip(numbers, known),
         )
-        if told is not None
+        if each is not None
     )
     verdict = _verdict(slip, known)
     numbers |= evidence.forced_wetting(curve, slip, known) if verdict == SUSPECTED else {}

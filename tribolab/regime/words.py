@@ -188,7 +188,7 @@ def paragraph(
         ("against", "Against it:"),
         ("neutral", "Neutral:"),
     ):
-        mine = [told.text for told in evidence if told.side == side]
+        mine = [each.text for each in evidence if each.side == side]
         if mine:
             parts.append(f"{opening} {'; '.join(mine)}.")
     if decide:

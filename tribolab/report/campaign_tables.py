@@ -162,7 +162,7 @@ def write_tables(
 
 def _sources(outcome: Outcome) -> pd.DataFrame:
     """Return the raw files with their checksums, run, and duration left out."""
-    said: dict[str, tuple[str, str]] = {}
+    by_file: dict[str, tuple[str, str]] = {}
     for entry in outcome.store.all("run", RunRecord):
         run = entry.record.outcome
         parts = (
@@ -170,8 +170,8 @@ def _sources(outcome: Outcome) -> pd.DataFrame:
             for part in entry.record.facts.omitted
             if part.duration_s is not None
         )
-        said |= dict.fromkeys(run.files, (run.name, "; ".join(parts)))
-    rows = [(*source, *said.get(source[0], ("", ""))) for source in outcome.sources]
+        by_file |= dict.fromkeys(run.files, (run.name, "; ".join(parts)))
+    rows = [(*source, *by_file.get(source[0], ("", ""))) for source in outcome.sources]
     return pd.DataFrame(rows, columns=["file", "sha256", "bytes", "run", "left_out"])
 
 
@@ -211,8 +211,8 @@ def write_checks(outcome: Outcome, findings: Sequence[Notice], folder: Path) -> 
         for entry in outcome.store.all("run", RunRecord):
             name = entry.record.outcome.name
             for row in entry.record.facts.checks:
-                said = cures.get((name, f"{row.check} {row.variable}".strip()), ())
-                full = [text for text in said if row.message in text]
+                cure_texts = cures.get((name, f"{row.check} {row.variable}".strip()), ())
+                full = [text for text in cure_texts if row.message in text]
                 made: Row = {"run": name} | {key: getattr(row, key) for key in _CHECK}
                 yield made | {"message": full[0] if full else row.message}
 

@@ -96,8 +96,8 @@ def write_report(
     curves = [entry.record for entry in store.all("curve", CurveRecord)]
     surfaces = [entry.record for entry in store.all("surface", SurfaceRecord)]
     models = [entry.record for entry in store.all("model", ModelRecord)]
-    briefs, said, points, along = _summarise_runs(outcome)
-    findings = _part_notices(outcome, surfaces, models) + said
+    briefs, notices, points, along = _summarise_runs(outcome)
+    findings = _part_notices(outcome, surfaces, models) + notices
     shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
     findings += [note for curve in shown for note in curve_notices(curve)]
@@ -189,14 +189,14 @@ def _summarise_runs(
 ) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[FigureSpec]]:
     """Return short entries and notices of all runs, their points, and figures along runs."""
     briefs: list[Json] = []
-    said: list[Notice] = []
+    notices: list[Notice] = []
     points: dict[str, list[RunPoint]] = {}
     settled: list[Along] = []
-    held: list[RunRecord] = []
+    shown: list[RunRecord] = []
     count = 0
     for entry in outcome.store.all("run", RunRecord):
         briefs.append(brief_run(run_document(entry.record)))
-        said += entry.record.notices
+        notices += entry.record.notices
         name = entry.record.outcome.name
         facts = entry.record.facts
         run = entry.record.outcome
@@ -205,8 +205,8 @@ def _summarise_runs(
         if (of_run := along_of(entry.record)) is not None:
             count += 1
             settled += [of_run] * (len(settled) < MAX_RUNS)
-        held += [entry.record] * bool(len(held) < MAX_RUNS and starts_of(entry.record))
-    return briefs, said, points, [*along_figures(settled, count), *static_figures(held)]
+        shown += [entry.record] * bool(len(shown) < MAX_RUNS and starts_of(entry.record))
+    return briefs, notices, points, [*along_figures(settled, count), *static_figures(shown)]
 
 
 def _part_notices(
@@ -228,12 +228,12 @@ def _part_notices(
         for run in outcome.runs
         if run.quality in ("fail", "error")
     ]
-    said = [(f"surface {part.outcome.name}", part.outcome.findings) for part in surfaces]
-    said += [
+    notices = [(f"surface {part.outcome.name}", part.outcome.findings) for part in surfaces]
+    notices += [
         (f"model {part.outcome.name.removeprefix('model_')}", part.outcome.findings)
         for part in models
     ]
-    findings += [Notice(f.severity, "", where, f.message) for where, of in said for f in of]
+    findings += [Notice(f.severity, "", where, f.message) for where, of in notices for f in of]
     return findings
 
 

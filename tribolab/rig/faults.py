@@ -52,7 +52,7 @@ class Fault:
         return self.surface in ("", surface) and self.medium in ("", medium)
 
 
-@of_lists("run", beside="faults")
+@of_lists("run", paired="faults")
 def inject(
     run: SimulatedRun, faults: str | Iterable[str], rng: int | np.random.Generator = 0
 ) -> SimulatedRun:
@@ -90,8 +90,8 @@ def inject(
                 f"not on {surface} {medium}"
             )
         force_log, motion_log, facts = fault.strike(run, rng)
-        told = {"name": name, "what": fault.what, "severity": fault.severity}
-        listed = [*run.facts.get("faults", []), {**told, "check": fault.check, **facts}]
+        entry = {"name": name, "what": fault.what, "severity": fault.severity}
+        listed = [*run.facts.get("faults", []), {**entry, "check": fault.check, **facts}]
         run = replace(
             run,
             force_log=force_log,

@@ -40,7 +40,7 @@ def run_name(surface: str, medium: str, normal_force: float, number: int) -> str
     return f"{surface.lower()}_{medium}_{normal_force:g}N_{number:02d}"
 
 
-@of_lists("surface", "medium", "normal_force", "number", "seed", beside="faults")
+@of_lists("surface", "medium", "normal_force", "number", "seed", paired="faults")
 def simulate_run(
     surface: str = "Sb-S",
     medium: str = "glycerol",

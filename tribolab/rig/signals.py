@@ -30,14 +30,14 @@ class StrokeFriction:
         Length of the stroke [m].
     ripple
         Stick-slip and fluctuation, added to the level.
-    held
+    left
         Remaining friction before the stroke, in the direction of this stroke.
     """
 
     level: float
     length: float
     ripple: Callable[[np.ndarray], np.ndarray]
-    held: float
+    left: float
     protocol: Protocol
 
     def __call__(self, distance: np.ndarray) -> np.ndarray:
@@ -47,7 +47,7 @@ class StrokeFriction:
         part = np.clip(distance / self.protocol.run_in, 0, 1)
         peak = 27 / 4 * part * (1 - part) ** 2  # maximum of 1 at a third, zero at the end
         run_in = self.level * self.protocol.overshoot * peak
-        return self.held + (steady - self.held) * built + run_in
+        return self.left + (steady - self.left) * built + run_in
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def make_signals(
         # middle of each small step of the constant-speed part, from the stroke's start
         fine = 0.5 * speed * ramp + speed * duration * (np.arange(_FINE) + 0.5) / _FINE
         ripple = _ripple(form, length, wavelength, drop * level, level, scatter, fine, rng)
-        stroke = StrokeFriction(level, length, ripple, held=left * direction, protocol=protocol)
+        stroke = StrokeFriction(level, length, ripple, left=left * direction, protocol=protocol)
         strokes.append(stroke)
         last = direction * float(stroke(np.array([length]))[0])
         left = last * float(_relaxed_share(protocol, protocol.rest))

@@ -55,12 +55,12 @@ def tell_statuses(table: pd.DataFrame) -> str:
     >>> tell_statuses(pd.DataFrame({"status": status, "tolerance": [0.01, 0.25, 0.1]}))
     '3 published numbers: 1 reproduced, 1 within a wide tolerance (25 %), 1 differs'
     """
-    said = []
+    texts = []
     for status, count in count_statuses(table).items():
         if count:
             words = f"{count} {_WORDS[status][count > 1]}"
-            said.append(f"{words} ({_rooms(table)})" if status == WIDE else words)
-    return f"{many(len(table), 'published number')}: {', '.join(said)}"
+            texts.append(f"{words} ({_rooms(table)})" if status == WIDE else words)
+    return f"{many(len(table), 'published number')}: {', '.join(texts)}"
 
 
 def _rooms(table: pd.DataFrame) -> str:

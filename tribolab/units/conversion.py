@@ -211,8 +211,8 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         # text that breaks the grammar of units is rejected without pint
         parse_unit(pint_spelling(unit))
     except UnitError as error:
-        said = shown(unit)
-        raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
+        text = shown(unit)
+        raise UnitError(f"'{text}' is not a unit that is known; write e.g. '{si_unit}'") from error
     # imported late: pint loads slowly
     import pint
 
@@ -224,8 +224,8 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     except pint.DimensionalityError as error:
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'") from error
     except Exception as error:  # pint raises many kinds of errors for text that is not a unit
-        said = shown(unit)
-        raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
+        text = shown(unit)
+        raise UnitError(f"'{text}' is not a unit that is known; write e.g. '{si_unit}'") from error
     scale = float(size - zero)
     # a decimal prefix is exact in text: 1000 um = 1 mm, not 0.9999999999999999
     return float(f"{scale:.15g}"), float(zero)
@@ -288,18 +288,18 @@ def to_si(
                 f"{name}: one number, or text such as '1 {si_unit}', is wanted; got "
                 f"{shown(repr(value), 60)}"
             ) from error
-    said = shown(value)
+    text = shown(value)
     match = _NUMBER.match(value) if len(value) <= _MAX_QUANTITY else None
     if not match:
-        raise UnitError(f"{name}: '{said}' has no number; write e.g. '1 {si_unit}'")
+        raise UnitError(f"{name}: '{text}' has no number; write e.g. '1 {si_unit}'")
     number, unit = float(match[1]), match[2]
     if not math.isfinite(number):
-        raise UnitError(f"{name}: '{said}' is larger than any number; write e.g. '1 {si_unit}'")
+        raise UnitError(f"{name}: '{text}' is larger than any number; write e.g. '1 {si_unit}'")
     if not unit and si_unit not in ("", "1"):
-        raise UnitError(f"{name}: '{said}' has no unit; write e.g. '{said} {si_unit}'")
+        raise UnitError(f"{name}: '{text}' has no unit; write e.g. '{text} {si_unit}'")
     if re.match(r",\d", unit):
         pointed = shown(value.strip().replace(",", ".", 1))
-        raise UnitError(f"{name}: '{said}' has a decimal comma; write '{pointed}'")
+        raise UnitError(f"{name}: '{text}' has a decimal comma; write '{pointed}'")
     try:
         scale, offset = conversion(unit, si_unit, bare)
     except UnitError as error:

@@ -54,13 +54,13 @@ def add_units(data: xr.Dataset | xr.DataArray) -> str:
         return text
     own = getattr(data, "data_vars", {})
 
-    def beside(match: re.Match[str]) -> str:
+    def rewrite(match: re.Match[str]) -> str:
         name = html.unescape(match[2])
         holder: Any = data.coords if name in data.coords else own
         unit = holder[name].attrs.get("units") if name in holder else None
         return f"{match[1]}{html.escape(str(unit))}, " if unit else match[1]
 
-    text = _VARIABLE.sub(beside, text)
+    text = _VARIABLE.sub(rewrite, text)
     unit = "" if hasattr(data, "data_vars") else data.attrs.get("units", "")
     if unit:
         text = _NAME.sub(rf"\g<1>\g<2> [{html.escape(str(unit))}]\g<3>", text, count=1)

@@ -107,8 +107,8 @@ def _full_name(name: str) -> str:
     >>> _full_name("Nanometres"), _full_name("INCHES"), _full_name("Ångström"), _full_name("Fx")
     ('nanometer', 'inch', 'angstrom', 'Fx')
     """
-    told = _WRITTEN.fullmatch(name)
-    if told is None:
+    match = _WRITTEN.fullmatch(name)
+    if match is None:
         return name
-    unit = told["unit"].lower()
-    return (told["prefix"] or "").lower() + _WRITTEN_AS.get(unit, unit)
+    unit = match["unit"].lower()
+    return (match["prefix"] or "").lower() + _WRITTEN_AS.get(unit, unit)

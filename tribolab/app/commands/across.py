@@ -101,10 +101,10 @@ def repeatability(
         from tribolab.comparison.repeat_study import repeatability_verdict
         from tribolab.comparison.repeatability_page import write_repeatability
 
-        told = repeated(campaign, by)
+        study = repeated(campaign, by)
         name = campaign.resolve().parent.name if campaign.is_file() else campaign.resolve().name
-        page = write_repeatability(told, f"Repeatability of {name}", output)
-        say(repeatability_verdict(told))
+        page = write_repeatability(study, f"Repeatability of {name}", output)
+        say(repeatability_verdict(study))
         say(f"page: {page}")
 
 
@@ -134,18 +134,18 @@ def history(
         from tribolab.comparison.watched import results_below
         from tribolab.metrology.control_charts import DEFAULT_RULES
 
-        told = followed(
+        history = followed(
             results_below(folders), rules=tuple(rule or DEFAULT_RULES), baseline=baseline
         )
-        page = write_history(told, output)
-        for name, due in told.due.items():
+        page = write_history(history, output)
+        for name, due in history.due.items():
             date = due.date.isoformat() if due.date else "unknown"
             say(f"{name}: calibration due {date} ({due.reason})")
-        for text in told.unread:
+        for text in history.unread:
             say(f"tribolab: {text}", to_stderr=True)
-        say(history_verdict(told))
+        say(history_verdict(history))
         say(f"page: {page}")
-    raise typer.Exit(1 if told.signalling else 0)
+    raise typer.Exit(1 if history.signalling else 0)
 
 
 def plan(

@@ -12,7 +12,7 @@ from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, reported
 from tribolab.app.streams import say
 from tribolab.core.errors import ConfigError
 
-_MAX_SAID = 50  # most files named
+_MAX_NAMED = 50  # most files named
 
 
 def pack(
@@ -119,12 +119,12 @@ def verify(
         if recompute:
             with progress_bars(quiet) as progress:
                 wrong += recomputed(results, campaign, jobs=jobs, progress=progress, trust=trust)
-        for text in wrong[:_MAX_SAID]:
+        for text in wrong[:_MAX_NAMED]:
             say(f"tribolab: {results}: {text}", to_stderr=True)
-        if len(wrong) > _MAX_SAID:
-            say(f"tribolab: {results}: and {len(wrong) - _MAX_SAID} more", to_stderr=True)
+        if len(wrong) > _MAX_NAMED:
+            say(f"tribolab: {results}: and {len(wrong) - _MAX_NAMED} more", to_stderr=True)
         if wrong:
             raise typer.Exit(UNREADABLE)
-        told = "packed" if results.is_file() else "written"
+        verb = "packed" if results.is_file() else "written"
         same = ", and computed again from the raw files it is the same" if recompute else ""
-        say(f"{results}: as it was {told}{same}")
+        say(f"{results}: as it was {verb}{same}")

@@ -14,7 +14,7 @@ from tribolab.app.quick import importing, plain_arrays_only
 from tribolab.app.ranges import range_of
 from tribolab.arrays.reversals import reversals
 from tribolab.campaign.engine.stage import Stage
-from tribolab.core.errors import ReadError, TribolabError, shown, told
+from tribolab.core.errors import ReadError, TribolabError, message_for, shown
 from tribolab.core.wording import Count, explain
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import known_dialects, load_dialect
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
 _MAX_TEXT = 300  # characters of a file's own text
-_TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
-_TOLD_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
+_SHOWN_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
+_SHOWN_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
 _INSTALL = "install it: pip install 'tribolab[formats]'"
 _ROUNDING = 1e-6  # share of a step: positions with smaller deviations are evenly spaced
 
@@ -66,8 +66,8 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     if drafted or kind == "run":
         log = read_log(path, instrument)
         facts = file_facts(log, path, instrument)
-        told = [] if drafted else companion_lines(describe_companion(path, instrument, log))
-        return run_lines(facts) + (told or missing_lines(facts, log.columns)) + _doubts(log.columns)
+        more = [] if drafted else companion_lines(describe_companion(path, instrument, log))
+        return run_lines(facts) + (more or missing_lines(facts, log.columns)) + _doubts(log.columns)
     with importing():
         plain_arrays_only()
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
@@ -108,13 +108,13 @@ def _modulus_lines(path: Path) -> list[str]:
         raise ReadError(f"a modulus over frequency: {error.what}", cure=error.cure) from error
     omega = table.angular_frequency
     warm = f" at {table.temperature:.3g} C" if table.temperature == table.temperature else ""
-    said = [
+    lines = [
         f"{path}: storage and loss modulus over frequency",
         f"  {omega.size} rows, {range_of(f'{omega[0]:.3g}', f'{omega[-1]:.3g}')} rad/s{warm}",
         f"  storage  {range_of(f'{table.storage.min():.3g}', f'{table.storage.max():.3g}')} Pa",
         f"  loss     {range_of(f'{table.loss.min():.3g}', f'{table.loss.max():.3g}')} Pa",
     ]
-    return [*said, *(f"  {remark}" for remark in table.remarks), f"  {name}"]
+    return [*lines, *(f"  {remark}" for remark in table.remarks), f"  {name}"]
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,9 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
         if isinstance(error, TribolabError) and not isinstance(error, ReadError):
             raise error
         read = isinstance(error, ReadError)  # other files are still described
-        return Described(task[0], error=told(error, "terminal") if read else explain(error)[0])
+        return Described(
+            task[0], error=message_for(error, "terminal") if read else explain(error)[0]
+        )
 
     def keep(
         self, task: tuple[Path, str | Path | None], place: int, record: Described
@@ -162,7 +164,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
     """Read the traces of a scan; a file that is no scan gives the error of a run."""
     # imported late for a quick start
     from tribolab.reading.scan_files import read_traces
-    from tribolab.reading.scans.formats.profilometers import NotSaidError
+    from tribolab.reading.scans.formats.profilometers import MissingUnitError
     from tribolab.reading.unknown.proposal.questions import GuessedError
 
     try:
@@ -172,7 +174,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
             raise
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
             # a map or profile that lacks units only
-            bare = isinstance(error, NotSaidError) and not is_run_file(path, by_name=False)
+            bare = isinstance(error, MissingUnitError) and not is_run_file(path, by_name=False)
             draft = draft_of(path)
             named = draft is not None and draft.kind == "table"
             try:
@@ -250,7 +252,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     lines += roughness_lines(scan)
     if doubt := doubt_about_heights(scan):
         lines.append(f"  doubtful: {doubt}")
-    attrs = {key: value for key, value in scan.attrs.items() if key not in _TOLD_OF_SCAN}
+    attrs = {key: value for key, value in scan.attrs.items() if key not in _SHOWN_OF_SCAN}
     return lines + _attribute_lines(attrs, path)
 
 
@@ -267,15 +269,15 @@ def _results_lines(path: Path) -> list[str]:
 
 
 def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
-    told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
-    if float(told.get("x_unevenness", 1.0)) < _ROUNDING:
-        del told["x_unevenness"]
-    if "to_keep_it" in told:  # to be typed where `info` was
+    others = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _SHOWN_ABOVE}
+    if float(others.get("x_unevenness", 1.0)) < _ROUNDING:
+        del others["x_unevenness"]
+    if "to_keep_it" in others:  # to be typed where `info` was
         # imported late for a quick start
         from tribolab.reading.unknown.proposal.questions import how_to_keep
 
-        told["to_keep_it"] = how_to_keep(str(path))
-    return [f"  {key}: {shown(_value_text(value), _MAX_TEXT)}" for key, value in told.items()]
+        others["to_keep_it"] = how_to_keep(str(path))
+    return [f"  {key}: {shown(_value_text(value), _MAX_TEXT)}" for key, value in others.items()]
 
 
 def _value_text(value: object) -> str:
@@ -363,31 +365,31 @@ def _doubts(signals: Mapping[str, np.ndarray]) -> list[str]:
     return [f"  doubtful: {doubt}"] if doubt else []
 
 
-def companion_lines(told: CompanionFacts) -> list[str]:
+def companion_lines(facts: CompanionFacts) -> list[str]:
     """Return whether a run's second log was found, and how its clock was matched.
 
     Parameters
     ----------
-    told
+    facts
         From `tribolab.reading.runs.companion.describe_companion`.
     """
-    if "missing" in told:
-        return [f"  companion log: {told['missing']} is not there"]
-    if "ways" not in told:
-        return [f"  companion log: refused: {told['refused']}"] if told else []
-    lines = [f"  companion log: found ({told['instrument']})"]
-    if "refused" in told:
+    if "missing" in facts:
+        return [f"  companion log: {facts['missing']} is not there"]
+    if "ways" not in facts:
+        return [f"  companion log: refused: {facts['refused']}"] if facts else []
+    lines = [f"  companion log: found ({facts['instrument']})"]
+    if "refused" in facts:
         lines.append(
-            f"  clock shift: not told by the signals: {told['refused']}; "
+            f"  clock shift: not told by the signals: {facts['refused']}; "
             "state clock_shift in the [[run]] of a campaign file"
         )
     else:
         lines.append(
-            f"  clock shift: {told['shift_s']:.6g} s, standard uncertainty "
-            f"{told['uncertainty_s']:.2g} s, {told['source']}"
+            f"  clock shift: {facts['shift_s']:.6g} s, standard uncertainty "
+            f"{facts['uncertainty_s']:.2g} s, {facts['source']}"
         )
     return lines + [
-        f"    told by {_WAYS.get(name, name)}: {way}" for name, way in told["ways"].items()
+        f"    told by {_WAYS.get(name, name)}: {way}" for name, way in facts["ways"].items()
     ]
 
 

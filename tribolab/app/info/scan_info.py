@@ -19,7 +19,7 @@ _OTHER_FORM = 0.02  # relative change of roughness above which the choice of for
 
 def stated_lines(attrs: Mapping[str, Any]) -> list[str]:
     """Return the settings of the trace that the file states."""
-    told = [
+    stated = [
         f"{name} {scale * float(attrs[key]):.6g}{unit}"
         for key, name, scale, unit in (
             ("tip_radius_m", "tip radius", 1e6, " um"),
@@ -29,7 +29,7 @@ def stated_lines(attrs: Mapping[str, Any]) -> list[str]:
         )
         if isinstance(attrs.get(key), float)
     ]
-    return [f"  stated  {', '.join(told)}"] if told else []
+    return [f"  stated  {', '.join(stated)}"] if stated else []
 
 
 def areal_lines(scan: xr.Dataset) -> list[str]:
@@ -41,19 +41,19 @@ def areal_lines(scan: xr.Dataset) -> list[str]:
     if scan["height"].size > _LARGEST_MAP:
         return []
     try:
-        said, level = (areal_roughness(remove_form(scan, form)) for form in ("polynomial", "tilt"))
+        bent, level = (areal_roughness(remove_form(scan, form)) for form in ("polynomial", "tilt"))
     except AnalysisError:  # reported by a check of the scan
         return []
-    sq, sa, level_sq = (1e6 * float(value.mean()) for value in (said.Sq, said.Sa, level.Sq))
-    beside = ""
+    sq, sa, level_sq = (1e6 * float(value.mean()) for value in (bent.Sq, bent.Sa, level.Sq))
+    tilt_text = ""
     if sq > 0 and abs(level_sq / sq - 1) > _OTHER_FORM:
-        beside = (
+        tilt_text = (
             f"; with the tilt alone taken off Sq {level_sq:.3g} um, "
             f'Sa {1e6 * float(level.Sa.mean()):.3g} um (form = "tilt" in [roughness])'
         )
     return [
         f"  Sq      {sq:.3g} um, Sa {sa:.3g} um: polynomial of degree 2 taken off, waves of every "
-        f"length, over the whole map (ISO 25178){beside}"
+        f"length, over the whole map (ISO 25178){tilt_text}"
     ]
 
 
@@ -80,18 +80,18 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
         level = 1e6 * float(primary_roughness(tilted).mean())
     except AnalysisError:  # reported by a check of the scan
         return []
-    told = {name: f"{1e6 * float(iso[name].mean()):.3g} um" for name in ("Rq", "Ra")}
+    sizes = {name: f"{1e6 * float(iso[name].mean()):.3g} um" for name in ("Rq", "Ra")}
     all_waves = 1e6 * float(primary_roughness(flat).mean())
     cut = iso.attrs.get("lambda_c_m")
     by = " by the instrument" if iso.attrs["filtered_by"] == "instrument" else ""
     filtered = f"waves longer than {1e3 * cut:.3g} mm filtered out{by}" if cut else "no cut-off"
     if cut and not by and cut < STANDARD_CUTOFF:
         filtered += f" (a fifth of the scan, which is short of {5e3 * STANDARD_CUTOFF:.3g} mm)"
-    for name in told:
+    for name in sizes:
         if (error := f"{name}_sem") in iso:
             value, sem = (1e6 * float(iso[each].mean()) for each in (name, error))
             row = {f"{name}_sem_m": sem, "sampling_lengths": iso.attrs["sampling_lengths"]}
-            told[name] = f"{error_text(value, roughness_u95(row, name))} um"
+            sizes[name] = f"{error_text(value, roughness_u95(row, name))} um"
     radius = flat.attrs.get("form_radius_m", math.inf)
     is_map = scan.sizes.get("y", 1) > 1
     form = "polynomial of degree 2" if is_map else "form"
@@ -106,17 +106,17 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     rows = ", along its rows" if is_map else ""
     count = iso.attrs.get("sampling_lengths")
     lengths = "sampling lengths" if count is None else many(int(count), "sampling length")
-    beside = ""
+    tilt_text = ""
     if abs(level / all_waves - 1) > _OTHER_FORM:
-        beside = (
+        tilt_text = (
             f"; with the tilt alone taken off Pq {level:.3g} um, "
             f'Pa {_mean_deviation(tilted):.3g} um (form = "tilt" in [roughness])'
         )
     return [
-        f"  Rq      {told['Rq']}, Ra {told['Ra']}: {form} taken off, {filtered}; means over "
+        f"  Rq      {sizes['Rq']}, Ra {sizes['Ra']}: {form} taken off, {filtered}; means over "
         f"{lengths}{rows} (ISO 4287)",
         f"  Pq      {all_waves:.3g} um, Pa {_mean_deviation(flat):.3g} um: {form} taken off, "
-        f"waves of every length{rows}{beside}",
+        f"waves of every length{rows}{tilt_text}",
     ]
 
 

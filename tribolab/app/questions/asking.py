@@ -112,13 +112,13 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
 def _ask_about_scan(draft: Draft, ask: Ask, say: Say) -> Draft:
     """Ask for the columns of a scan that are not known, and at once for the units of the others."""
     for name, words in _SCAN.items():
-        held = _column_of_any(draft, (name,))
-        known = held is not None and not (held.guessed or held.fill_in)
-        if held is None or (not known and (held.counted or held.file_unit)):
+        found = _column_of_any(draft, (name,))
+        known = found is not None and not (found.guessed or found.fill_in)
+        if found is None or (not known and (found.counted or found.file_unit)):
             question = f"which column is {words}? (its number; {_NONE} for none)"
             draft = _ask_for(draft, (name,), question, ask, say)
     doubtful = {
-        name: held for name in _SCAN if (held := _column_of_any(draft, (name,))) and held.guessed
+        name: found for name in _SCAN if (found := _column_of_any(draft, (name,))) and found.guessed
     }
     if not doubtful:
         return draft
@@ -179,10 +179,10 @@ def _ask_for_lengths(
     guessed = [value for value in follows.values if value.guess]
     if guessed or "track_radius" in lacks:
         guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
-        said = candidate_lines(layout, follows, "track_radius")
+        lines = candidate_lines(layout, follows, "track_radius")
         value = likely_value(layout, follows, "track_radius")
         question = "what is the radius of the track, with its unit"
-        question += f"; is it in {said}?" if said else "?"
+        question += f"; is it in {lines}?" if lines else "?"
         likely = amount_of(value)
         guess = _YES[0] if likely and guess == _NONE else guess
         radius = _ask_amount(question, "radius", "m", guess, ask, say, likely)
@@ -247,23 +247,23 @@ def _ask_for(
     draft: Draft, names: Sequence[str], question: str, ask: Ask, say: Say, amount: str = ""
 ) -> Draft:
     """Ask which column contains one of several quantities, or for an amount instead, if open."""
-    held = _column_of_any(draft, names)
-    if held is not None and held.quantity in names and not (held.guessed or held.fill_in):
+    found = _column_of_any(draft, names)
+    if found is not None and found.quantity in names and not (found.guessed or found.fill_in):
         return draft  # nothing is open
-    said = _answered_amount(draft, amount)
-    if held is None and not said and _states_amount(draft, amount):
+    earlier = _answered_amount(draft, amount)
+    if found is None and not earlier and _states_amount(draft, amount):
         return draft
-    lines, value = ("", None) if held or said else _candidate_amount(draft, amount)
+    lines, value = ("", None) if found or earlier else _candidate_amount(draft, amount)
     likely = amount_of(value)
     if lines:
         question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
     # which column it is can be seen above: only its unit is open
-    typed = str(held.place) if held and held.fill_in and not held.guessed else ""
+    typed = str(found.place) if found and found.fill_in and not found.guessed else ""
     while True:
         usual = _YES[0] if likely else _NONE
-        typed = typed or ask(question, str(held.place) if held else said or usual).strip()
+        typed = typed or ask(question, str(found.place) if found else earlier or usual).strip()
         if typed == _NONE:
-            return draft if held is None else _remove_quantities(draft, names)
+            return draft if found is None else _remove_quantities(draft, names)
         if value is not None and typed.lower() in (*_YES, likely):
             return _confirm_line(_remove_quantities(draft, names), amount, value)
         try:
@@ -275,16 +275,16 @@ def _ask_for(
             if amount and (text := as_amount(typed, amount)):
                 return _with_amount(_remove_quantities(draft, names), amount, text)
             column = _column(draft, typed)
-            if held and column.place == held.place and not held.guessed and not held.fill_in:
+            if found and column.place == found.place and not found.guessed and not found.fill_in:
                 return draft
-            known = held if held and column.place == held.place else None
-            worth = _ask_unit(column, names, known, ask)
-            sign = _ask_sign(draft, column, worth.name, ask)
-            draft = _remove_quantities(draft, names, but=worth.name)
+            known = found if found and column.place == found.place else None
+            reply = _ask_unit(column, names, known, ask)
+            sign = _ask_sign(draft, column, reply.name, ask)
+            draft = _remove_quantities(draft, names, but=reply.name)
             draft = corrected(
-                draft, worth.name, column.place, worth.unit or None, sign, scale=worth.scale
+                draft, reply.name, column.place, reply.unit or None, sign, scale=reply.scale
             )
-            return _ask_zero(draft, column, worth, ask, say)
+            return _ask_zero(draft, column, reply, ask, say)
         except TribolabError as error:
             typed = ""
             say(str(error.what))
@@ -295,9 +295,9 @@ def _column_of_any(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
     columns = draft.understood.columns if draft.understood else ()
     for name in names:
         by_name = {TORQUE: torque_of, ANGLE: angle_of}.get(name)
-        held = column_of(draft, name) if by_name is None else by_name(columns)
-        if held is not None:
-            return held
+        column = column_of(draft, name) if by_name is None else by_name(columns)
+        if column is not None:
+            return column
     return None
 
 
@@ -329,7 +329,7 @@ def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
     if layout is None or understood is None:
         return draft
     wanted = [_column(draft, place.strip()) for place in typed.split("+")]
-    said = {column.place: _ask_unit(column, _LOAD[:1], None, ask) for column in wanted}
+    answers = {column.place: _ask_unit(column, _LOAD[:1], None, ask) for column in wanted}
     columns = [
         c._replace(
             quantity=None,
@@ -337,12 +337,12 @@ def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
             guessed=(),
             options=(),
             fill_in="",
-            unit=said[c.place].unit or None,
-            scale=said[c.place].scale,
+            unit=answers[c.place].unit or None,
+            scale=answers[c.place].scale,
             note=Reason.ADDS.value,
             reason=Reason.ADDS,
         )
-        if c.place in said
+        if c.place in answers
         else c
         for c in understood.columns
     ]
@@ -365,8 +365,8 @@ def _states_amount(draft: Draft, amount: str) -> bool:
         return False
     follows = what_follows(layout, understood)
     formulas = {each.formula for each in follows.formulas if each.quantity == "normal_force"}
-    told = [value for value in follows.values if {value.name} == formulas]
-    return bool(told) and not told[0].guess
+    loads = [value for value in follows.values if {value.name} == formulas]
+    return bool(loads) and not loads[0].guess
 
 
 def _confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
@@ -386,7 +386,7 @@ def _candidate_amount(draft: Draft, amount: str) -> tuple[str, Amount | None]:
     if layout is None or understood is None or not lack:
         return "", None
     follows = what_follows(layout, understood)
-    missing = any(said.member == lack for said in lacking(understood, follows))
+    missing = any(lacked.member == lack for lacked in lacking(understood, follows))
     if not missing:
         return "", None
     return candidate_lines(layout, follows, lack), likely_value(layout, follows, lack)
@@ -415,34 +415,36 @@ def _column(draft: Draft, typed: str) -> DraftColumn:
 
 
 def _ask_unit(
-    column: DraftColumn, names: Sequence[str], held: DraftColumn | None, ask: Ask
+    column: DraftColumn, names: Sequence[str], known: DraftColumn | None, ask: Ask
 ) -> Worth:
     """Ask for the unit of a column, unless the file states a suitable unit.
 
     For a column with known quantity, only the unit is asked.
     """
-    name = next((name for name in names if held is not None and held.quantity == name), "")
+    name = next((name for name in names if known is not None and known.quantity == name), "")
     asked = (name,) if name else tuple(names)
-    said = column.file_unit or ""
-    for wanted in asked if said else ():
-        if _fits(said, wanted) and (column.unit is None or wanted not in QUANTITIES):
+    stated = column.file_unit or ""
+    for wanted in asked if stated else ():
+        if _fits(stated, wanted) and (column.unit is None or wanted not in QUANTITIES):
             return Worth(wanted, "")
     if name and quantity(name).unit == "1":
         return Worth(name, "")
-    foreign = bool(said) and is_unit(said) and not any(_fits(said, wanted) for wanted in asked)
+    foreign = (
+        bool(stated) and is_unit(stated) and not any(_fits(stated, wanted) for wanted in asked)
+    )
     question = f"in which unit does column {column.place} write it?"
     guess = _unit_guess(column, asked[0])
     if foreign:
-        question = f"column {column.place} is in {shown(said)}: how much is 1 {shown(said)}?"
-        question += f" (e.g. 8.2 {guess}/{shown(said)})"
+        question = f"column {column.place} is in {shown(stated)}: how much is 1 {shown(stated)}?"
+        question += f" (e.g. 8.2 {guess}/{shown(stated)})"
         guess = "?"
     elif "friction_force" in names or "normal_force" in names:
         question = question.removesuffix("?") + ", or what is one count of it (0.5 mN)?"
     typed = ask(question, guess).strip()
-    worth = worth_of(typed, asked, column.file_unit)
+    unit = worth_of(typed, asked, column.file_unit)
     if foreign and not typed[:1].isdigit() and typed[:1] not in "+-.":
-        raise TribolabError(f"say how much of {shown(typed, 20)} 1 {shown(said)} is")
-    return worth
+        raise TribolabError(f"say how much of {shown(typed, 20)} 1 {shown(stated)} is")
+    return unit
 
 
 def _fits(unit: str, name: str) -> bool:
@@ -469,11 +471,11 @@ def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
     return -1 if typed.strip().lower().startswith(("y", "j", "o", "s")) else 1
 
 
-def _ask_zero(draft: Draft, column: DraftColumn, worth: Worth, ask: Ask, say: Say) -> Draft:
+def _ask_zero(draft: Draft, column: DraftColumn, unit: Worth, ask: Ask, say: Say) -> Draft:
     """Ask for the reading of a force column without contact, if it has a calibration factor."""
     layout, understood = draft.layout, draft.understood
     forces = {*_FRICTION, *_LOAD}
-    if worth.scale == 1 or worth.name not in forces or layout is None or understood is None:
+    if unit.scale == 1 or unit.name not in forces or layout is None or understood is None:
         return draft
     question = f"what does column {column.place} read without contact, in its own numbers? "
     question += f"(or where it is so: first 5 s; {_NONE}: zero)"
@@ -483,7 +485,7 @@ def _ask_zero(draft: Draft, column: DraftColumn, worth: Worth, ask: Ask, say: Sa
             return draft
         offset, zero = 0.0, ""
         if NUMBER.match(typed):
-            offset = -worth.scale * float(typed.replace(",", "."))
+            offset = -unit.scale * float(typed.replace(",", "."))
             break
         try:
             parse_zero(typed)

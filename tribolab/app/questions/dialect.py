@@ -30,10 +30,10 @@ def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
     lines = []
     for file in files:
         try:
-            said = _try_run(file, dialect) if kind == "run" else _try_scan(file, dialect)
+            text = _try_run(file, dialect) if kind == "run" else _try_scan(file, dialect)
         except TribolabError as error:
-            said = error.told("terminal").removeprefix(f"{file}: ")
-        lines.append(f"tried:  {file.name}: {said}")
+            text = error.message_for("terminal").removeprefix(f"{file}: ")
+        lines.append(f"tried:  {file.name}: {text}")
     return lines
 
 
@@ -46,31 +46,31 @@ def _try_run(file: Path, dialect: Path) -> str:
 
     run = read_run(file, dialect, pair=False)
     time = run["time"].values
-    said = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
+    text = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
     if run.attrs.get("rows_are") == "points":
-        said = f"{Count(len(time)):result|results}, each at one speed"
+        text = f"{Count(len(time)):result|results}, each at one speed"
     if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.variables):
-        return f"{said}; no friction coefficient yet: nothing holds the friction"
+        return f"{text}; no friction coefficient yet: nothing holds the friction"
     try:
         segments = find_segments(run)
         friction = friction_coefficient(run, segments)
     except TribolabError as error:
-        why = error.told("terminal").removeprefix(f"{file.name}: ")
-        return f"{said}; no friction coefficient: {why}"
+        why = error.message_for("terminal").removeprefix(f"{file.name}: ")
+        return f"{text}; no friction coefficient: {why}"
     if why := why_no_segment(segments):
-        return f"{said}; {why}"
-    said += f", {Count(segments.sizes['segment']):segment|segments}"
+        return f"{text}; {why}"
+    text += f", {Count(segments.sizes['segment']):segment|segments}"
     if "friction_coefficient" not in friction:
-        return f"{said}, a friction force without a load: no friction coefficient"
+        return f"{text}, a friction force without a load: no friction coefficient"
     signal = friction_signal(run)
     turned = reversals(run[signal].values) if _undirected(run, segments) else 0
     if turned:
         return (
-            f"{said}; friction changes its sign {turned} times, but no column gives the "
+            f"{text}; friction changes its sign {turned} times, but no column gives the "
             "direction: it looks like reversing motion, whose mean is no friction coefficient; "
             'state stroke and frequency under [speed], with source = "stroke"'
         )
-    return f"{said}{_coefficients(friction)}"
+    return f"{text}{_coefficients(friction)}"
 
 
 def _coefficients(friction: xr.Dataset) -> str:
@@ -92,8 +92,8 @@ def _coefficients(friction: xr.Dataset) -> str:
         return ""
     if mu.size == 1 and of and np.isfinite(wide[0]):
         count = int(curve["segments"].values[0])
-        said = error_text(float(mu[0]), float(wide[0]))
-        return f", friction coefficient {said} (U95, mean of {count}; statistical only)"
+        text = error_text(float(mu[0]), float(wide[0]))
+        return f", friction coefficient {text} (U95, mean of {count}; statistical only)"
     span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")
     known = wide[np.isfinite(wide)]
     width = f"at most {known.max():.2g}" if known.size else "not known"
@@ -117,5 +117,5 @@ def _try_scan(file: Path, dialect: Path) -> str:
     height = scan["height"]
     span = float(height.max() - height.min())
     doubt = doubt_about_heights(scan)
-    said = f"{Count(height.size):point|points}, heights over {1e6 * span:.4g} um"
-    return f"{said}; doubtful: {doubt}" if doubt else said
+    text = f"{Count(height.size):point|points}, heights over {1e6 * span:.4g} um"
+    return f"{text}; doubtful: {doubt}" if doubt else text

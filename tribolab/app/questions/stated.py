@@ -54,17 +54,17 @@ class Stated(NamedTuple):
         if speed is not None and radius is not None:
             speed = turning(f"{_spaced(speed)} at {_spaced(radius)} radius") or speed
         given = cls(load, radius, speed, rate)
-        said = {}
+        stated = {}
         for name, unit in _UNITS.items():
             value = getattr(given, name)
             if value is None:
                 continue
             try:
-                said[name] = amount_typed(_spaced(value), name, unit)
+                stated[name] = amount_typed(_spaced(value), name, unit)
             except TribolabError as error:
                 hint = ". State --radius, too" if name == "speed" and radius is None else ""
                 raise ConfigError(f"--{name}: {error.what}{hint}") from error
-        return cls(**said)
+        return cls(**stated)
 
     @property
     def is_empty(self) -> bool:
@@ -73,8 +73,8 @@ class Stated(NamedTuple):
 
     def run_lines(self, *, described: bool) -> list[str]:
         """Return the lines of a [[run]]; without the speed if a description states it."""
-        said = {"normal_force": self.load, "sliding_speed": None if described else self.speed}
-        return [f'{key} = "{value}"' for key, value in said.items() if value is not None]
+        values = {"normal_force": self.load, "sliding_speed": None if described else self.speed}
+        return [f'{key} = "{value}"' for key, value in values.items() if value is not None]
 
 
 _UNITS = {"load": "N", "radius": "m", "speed": "m/s", "rate": "Hz"}
@@ -127,8 +127,8 @@ def describe_with(stated: Stated, files: Sequence[Path], folder: Path | None = N
         draft = draft_of(file)
         if draft is None or draft.kind != "run" or draft.understood is None:
             continue
-        said = {name: value for name, value in stated._asdict().items() if value is not None}
-        draft = draft.with_understood(draft.understood._replace(**said))
+        values = {name: value for name, value in stated._asdict().items() if value is not None}
+        draft = draft.with_understood(draft.understood._replace(**values))
         if draft.dialect is None:
             return None
         place = folder

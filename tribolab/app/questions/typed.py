@@ -65,13 +65,13 @@ def as_strokes(typed: str) -> tuple[str, str] | None:
     >>> as_strokes("stroke 6 mm, 1.5 Hz"), as_strokes("2 Hz"), as_strokes("6 mm/min")
     (('6 mm', '1.5 Hz'), ('', '2 Hz'), None)
     """
-    said = {
+    parts = {
         si: f"{match['number'].replace(',', '.')} {unit}"
         for match in _AMOUNT.finditer(typed)
         for si in ("m", "Hz")
         if is_unit(unit := match["unit"].rstrip(".,;")) and converts(unit, si)
     }
-    return (said.get("m", ""), said.get("Hz", "")) if said else None
+    return (parts.get("m", ""), parts.get("Hz", "")) if parts else None
 
 
 def turning(typed: str) -> str:
@@ -80,12 +80,12 @@ def turning(typed: str) -> str:
     >>> turning("8 rpm at 22.5 mm radius"), turning("8 mm at 2 Hz")
     ('0.0188496 m/s', '')
     """
-    how, said = _RADIUS.search(typed), as_strokes(typed)
-    if how is None or said is None or not all(said):
+    how, strokes = _RADIUS.search(typed), as_strokes(typed)
+    if how is None or strokes is None or not all(strokes):
         return ""
-    length = positive(said[0], "m", f"the {how[1].lower()}")
+    length = positive(strokes[0], "m", f"the {how[1].lower()}")
     radius = length / 2 if how[1].lower() == "diameter" else length
-    return f"{2 * math.pi * radius * positive(said[1], 'Hz', 'the turns'):.6g} m/s"
+    return f"{2 * math.pi * radius * positive(strokes[1], 'Hz', 'the turns'):.6g} m/s"
 
 
 def turns_alone(rate: str) -> bool:

@@ -32,9 +32,9 @@ class ClusterAbsent(ConfigError):
 
 def gone(why: str, done: int, of: int) -> str:
     """Return the error for a lost cluster, with the reason and the finished work."""
-    said = f"; {done} of {of} pieces of work were done" if of else ""
+    progress = f"; {done} of {of} pieces of work were done" if of else ""
     return (
-        f"the Dask cluster is lost: {why}{said}. Nothing was written, results of before are as "
+        f"the Dask cluster is lost: {why}{progress}. Nothing was written, results of before are as "
         "they were; start scheduler and workers again and repeat the command, leave --scheduler "
         "out, or add --local-if-lost"
     )

@@ -115,11 +115,11 @@ class _CopiedPopen(popen_forkserver.Popen):
         passed = self._fds  # type: ignore[attr-defined]
         self.sentinel, ours = self._nursery.connect_to_new_process(passed)
         # while it is open, the worker knows that its parent lives
-        held = os.dup(ours)
+        duplicate = os.dup(ours)
         self.finalizer = util.Finalize(
             self,
             util.close_fds,  # type: ignore[attr-defined]
-            (held, self.sentinel),
+            (duplicate, self.sentinel),
         )
         with open(ours, "wb") as file:  # noqa: PTH123 - a pipe
             file.write(data.getbuffer())

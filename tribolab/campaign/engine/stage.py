@@ -17,11 +17,11 @@ from tribolab.core.errors import OutputError
 
 Task = TypeVar("Task")
 Record = TypeVar("Record")
-Came = TypeVar("Came")
+Done = TypeVar("Done")
 Progress = Callable[[str, int, int], None]
 
 
-class Stage(ABC, Generic[Task, Record, Came]):
+class Stage(ABC, Generic[Task, Record, Done]):
     """Kind of work in a campaign.
 
     Attributes
@@ -45,7 +45,7 @@ class Stage(ABC, Generic[Task, Record, Came]):
     def plan(self) -> Sequence[Task]:
         """Return the tasks in the order of the results."""
 
-    def known(self, task: Task, place: int) -> Came | None:
+    def known(self, task: Task, place: int) -> Done | None:
         """Reuse a known result and return its outcome; None if there is none."""
         return None
 
@@ -62,7 +62,7 @@ class Stage(ABC, Generic[Task, Record, Came]):
         """Return the record of a task whose worker died."""
 
     @abstractmethod
-    def keep(self, task: Task, place: int, record: Record) -> Came:
+    def keep(self, task: Task, place: int, record: Record) -> Done:
         """Store a record, and return the summary for later stages."""
 
 
@@ -71,8 +71,8 @@ def silent(stage: str, done: int, total: int) -> None:
 
 
 def perform(
-    stage: Stage[Task, Record, Came], executor: Executor | None = None, tell: Progress | None = None
-) -> list[Came]:
+    stage: Stage[Task, Record, Done], executor: Executor | None = None, tell: Progress | None = None
+) -> list[Done]:
     """Do the work of a stage, and return the outcome of each task in the order of the plan.
 
     Parameters
@@ -93,8 +93,8 @@ def perform(
 
 
 def begun(
-    stage: Stage[Task, Record, Came], executor: Executor | None = None, tell: Progress | None = None
-) -> Callable[[], list[Came]]:
+    stage: Stage[Task, Record, Done], executor: Executor | None = None, tell: Progress | None = None
+) -> Callable[[], list[Done]]:
     """Start the work of a stage, and return a function that waits for its outcomes.
 
     The caller can work in the meantime; without an executor the work is done when it is waited for.
@@ -106,7 +106,7 @@ def begun(
     """
     tasks = stage.plan()
     tell = tell or silent
-    came: dict[int, Came] = {}
+    came: dict[int, Done] = {}
     left = []
     for place, task in enumerate(tasks):
         known = stage.known(task, place)
@@ -118,7 +118,7 @@ def begun(
         tell(stage.name, len(came), len(tasks))
     coming = answers(type(stage).work, stage.order(left), executor)
 
-    def ended() -> list[Came]:
+    def ended() -> list[Done]:
         for place, task, answer in coming:
             if isinstance(answer, OutputError):
                 raise answer

@@ -276,9 +276,9 @@ def _variants(
 
     priors = _priors(task)
     constant = replace(priors, speed_exponent=0.0, load_exponent=0.0)
-    beside = _read_wet_curves(task)
+    wet_curves = _read_wet_curves(task)
     wet, bare, other = (
-        [curve.with_response(other_area=area, friction_factors=factors) for curve in beside]
+        [curve.with_response(other_area=area, friction_factors=factors) for curve in wet_curves]
         for area, factors in ((False, True), (False, False), (True, True))
     )
     usual = [*wet, *_dry_load_curves(dry)]

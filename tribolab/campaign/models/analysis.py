@@ -89,7 +89,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
         bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
         other, moved = _with_other_area(computed), inputs and _with_other_area(inputs)
         again = _fit(model, measured, contact, psd, load, other, enhancement, moved)
-        groups["fit"] = beside(fit, measured).assign_attrs(
+        groups["fit"] = model_and_points(fit, measured).assign_attrs(
             **bounds,
             area=model.area,
             adhesion="without" if model.work_of_adhesion is None else "with",
@@ -264,7 +264,7 @@ def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float
     return best, low, high
 
 
-def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
+def model_and_points(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
     """Return model and points at the measured speeds, with the fit in the attributes.
 
     If the fitted shear stress is negative, the model is that with zero shear stress.

@@ -91,18 +91,18 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     segments, _ = _steady_part(run, signals, found, discard, steady)
     before: tuple[xr.Dataset | None, str] = (None, "")
     if any(decision.moves_numbers for decision in run.decisions):
-        friction, _, said = _evaluate(run, signals, segments)
-        before = friction, said.status
+        friction, _, judged = _evaluate(run, signals, segments)
+        before = friction, judged.status
     segments = decide(found, run.decisions, signals)
     segments, whole = _steady_part(run, signals, segments, discard, steady)
-    friction, slip, said = _evaluate(run, signals, segments)
+    friction, slip, judged = _evaluate(run, signals, segments)
     friction.attrs.update(sliding_temperature(signals, segments))
     friction.attrs.update(sliding_area(signals, segments))
     if run.decisions and before[0] is None:  # the numbers are the same
-        before = remove_decisions(friction), said.status_as_found
-    signals = said.marked
-    signals.attrs.update({QUALITY: said.status, _FINDINGS: said.rows})
-    analysed = Analysed(signals, segments, friction, slip, said.status, *before, whole)
+        before = remove_decisions(friction), judged.status_as_found
+    signals = judged.marked
+    signals.attrs.update({QUALITY: judged.status, _FINDINGS: judged.rows})
+    analysed = Analysed(signals, segments, friction, slip, judged.status, *before, whole)
     for data in analysed.groups.values():
         data.attrs.update(run_labels(run), config_sha256=run.config_sha256)
     note_reading(run, read, signals)

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.runs.stage import RunCame, keep_earlier
+from tribolab.campaign.runs.stage import RunHandle, keep_earlier
 from tribolab.campaign.settings.naming.named import is_named
 from tribolab.campaign.settings.naming.run_names import safe_name
-from tribolab.campaign.settings.review import review_beside
+from tribolab.campaign.settings.review import read_decisions
 from tribolab.campaign.store.kept import GONE, VERDICTS, kept_text
 from tribolab.core.wording import LOAD_STATED
 from tribolab.friction.decisions.decision import REJECT, Decision
@@ -26,7 +26,7 @@ _REJECTED = "rejected"  # quality of a run, by a person
 _LATER = "what was decided since reaches no segment of it, only the run as a whole"
 
 
-def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list[RunCame]:
+def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunHandle]) -> list[RunHandle]:
     """Replace runs whose files cannot be read by their earlier results.
 
     Parameters
@@ -40,7 +40,7 @@ def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list
 
     Returns
     -------
-    list of RunCame
+    list of RunHandle
         Runs in the same order; those of missing files come last.
     """
     kept = list(runs)
@@ -52,7 +52,7 @@ def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list
     }
     there = {label for came in runs for label in came.outcome.files}
     content = {checksum for came in runs for _, checksum, _ in came.sources}
-    decisions = review_beside(campaign.file)
+    decisions = read_decisions(campaign.file)
     for before in store.before.outcomes("run", RunOutcome):
         gone = [label for label in before.files if label not in there]
         why = [bad[label] for label in before.files if label in bad]

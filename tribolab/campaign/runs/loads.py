@@ -58,8 +58,8 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
         return RunLoad(None, "", None)
     if force[good].max() > _VARIES * force[good].min():
         levels = load_levels(force[good], lasts[good])
-        said = LOAD_STATED if levels and _is_set_point(signals) else LOAD_VARIES
-        return RunLoad(None, said, None, levels)
+        source = LOAD_STATED if levels and _is_set_point(signals) else LOAD_VARIES
+        return RunLoad(None, source, None, levels)
     mean = float(np.average(force[good], weights=lasts[good]))
     if _is_set_point(signals):
         return RunLoad(load_label(mean), LOAD_STATED, None)

@@ -11,7 +11,7 @@ from tribolab.core.wording import LOAD_STATED
 from tribolab.records.runs.run_record import RunRecord
 
 if TYPE_CHECKING:
-    from tribolab.campaign.runs.stage import RunCame
+    from tribolab.campaign.runs.stage import RunHandle
     from tribolab.campaign.store.catalogue import Store
     from tribolab.records.parts import RunOutcome
 
@@ -19,7 +19,7 @@ _Own = tuple[str, float]  # name of a run, and a load measured in it [N]
 _MAX_LOAD_RATIO = 1.05  # ratio of the largest to the smallest load of repeats
 
 
-def share_loads(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
+def share_loads(store: Store, came: Sequence[RunHandle]) -> list[RunHandle]:
     """Assign one load to repeats with measured loads; a stated one if another run has it."""
     systems: dict[tuple[str, str], list[RunOutcome]] = {}
     for run in came:
@@ -28,7 +28,7 @@ def share_loads(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
     return [_store_load(store, run, place, loads) for place, run in enumerate(came)]
 
 
-def _store_load(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> RunCame:
+def _store_load(store: Store, run: RunHandle, place: int, loads: dict[_Own, float]) -> RunHandle:
     """Store a run under its new load, if that has changed."""
     name, measured = run.outcome.name, run.outcome.measured_load
     load = run.outcome.normal_force if measured is None else loads[name, measured]

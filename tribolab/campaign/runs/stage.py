@@ -20,7 +20,7 @@ from tribolab.campaign.runs.zeros import zero_of
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
 from tribolab.campaign.store.data_files import write_data
-from tribolab.core.errors import AnalysisError, OutputError, told
+from tribolab.core.errors import AnalysisError, OutputError, message_for
 from tribolab.core.provenance import made
 from tribolab.core.untyped import Json
 from tribolab.core.wording import LOAD_STATED, explain
@@ -60,7 +60,7 @@ class RunAnswer(NamedTuple):
     trace: PageTrace | None = None
 
 
-class RunCame(NamedTuple):
+class RunHandle(NamedTuple):
     """Outcome of a run for the later stages of a campaign."""
 
     outcome: RunOutcome
@@ -75,7 +75,7 @@ class RunCame(NamedTuple):
         return self.fingerprint, lent, *(checksum for _, checksum, _ in self.sources)
 
 
-class Runs(Stage[RunTask, RunAnswer, RunCame]):
+class Runs(Stage[RunTask, RunAnswer, RunHandle]):
     """Stage of the runs.
 
     Parameters
@@ -105,7 +105,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         runs = self._runs if self._lent is None else self._lent.values()
         return [RunTask(run, self._store.folder, points, fine_size) for run in runs]
 
-    def known(self, task: RunTask, place: int) -> RunCame | None:
+    def known(self, task: RunTask, place: int) -> RunHandle | None:
         """Reuse a run with the same settings, version and files (by their checksums)."""
         if self._lent is not None:
             return None
@@ -129,7 +129,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         taken = replace(record, outcome=outcome, sources=sources)
         if not self._store.take(_KIND, run.name, place, mark, taken, record.outcome.data_file):
             return None
-        return RunCame(outcome, sources, record.zero, mark)
+        return RunHandle(outcome, sources, record.zero, mark)
 
     def prepared(self, task: RunTask) -> RunTask:
         """Add the place of the signals, if the raw files and their reading are unchanged."""
@@ -160,7 +160,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         """Return the record of a run whose worker died."""
         return RunAnswer(RunRecord(failed_run(task.run, *explain(error)), ()))
 
-    def keep(self, task: RunTask, place: int, record: RunAnswer) -> RunCame:
+    def keep(self, task: RunTask, place: int, record: RunAnswer) -> RunHandle:
         """Store the record of a run."""
         run = record.record
         if run.outcome.done and not (task.folder / run.outcome.data_file).is_file():
@@ -173,12 +173,12 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
             place = next(k for k, run in enumerate(self._runs) if run.name == task.run.name)
         self._store.put(_KIND, task.run.name, place, mark, run, record.trace)
         self._store.note_sources(zip(task.run.files, run.sources, strict=False), self._began)
-        return RunCame(run.outcome, run.sources, run.zero, mark)
+        return RunHandle(run.outcome, run.sources, run.zero, mark)
 
 
 def keep_earlier(
     store: Store, entry: Entry[RunRecord], outcome: RunOutcome, place: int
-) -> RunCame | None:
+) -> RunHandle | None:
     """Store an earlier result in place of a run whose files cannot be read.
 
     Returns None if its data file was changed.
@@ -187,7 +187,7 @@ def keep_earlier(
     data_file = entry.record.outcome.data_file
     if not store.take(_KIND, entry.name, place, entry.fingerprint, record, data_file):
         return None
-    return RunCame(outcome, record.sources, record.zero, entry.fingerprint)
+    return RunHandle(outcome, record.sources, record.zero, entry.fingerprint)
 
 
 def process_run(task: RunTask) -> RunAnswer:
@@ -229,8 +229,8 @@ def process_run(task: RunTask) -> RunAnswer:
         if starts_after_rests(starts):  # each start has its own transient: the run does not run in
             running_in = ()
         facts = replace(facts, running_in=running_in)
-        told = facts.decisions, slip, running_in
-        notices = notices_of(run.name, signals, segments, friction, *told)
+        results = facts.decisions, slip, running_in
+        notices = notices_of(run.name, signals, segments, friction, *results)
         trace, why = _trace(task, signals, segments, friction)
         rows = plain_rows(stick_slip_columns(slip))
     except OutputError:
@@ -325,7 +325,7 @@ def _trace(
     try:
         return page_trace(run, segments, friction, task.points, task.fine_size), []
     except AnalysisError as error:  # recorded: the run's numbers are kept without it
-        text = f"no trace to show: {told(error, 'campaign')}"
+        text = f"no trace to show: {message_for(error, 'campaign')}"
         return None, [Notice("error", task.run.name, "trace", text)]
 
 

@@ -78,7 +78,7 @@ class Campaign(Table):
         """The campaign file; all its paths are relative to its folder."""
         return self._file
 
-    def lies_at(self, path: Path) -> None:
+    def set_file(self, path: Path) -> None:
         """Say where the campaign file lies: its folders are relative to it."""
         self._file = path
 
@@ -169,13 +169,13 @@ class Campaign(Table):
 
     def contradicting_viscosities(self) -> dict[str, str]:
         """Return what contradicts the stated viscosity of a medium, by its name."""
-        said = {
+        found = {
             name: contradicting_viscosity(
                 table.liquid or name, table.viscosity, table.temperature, table.water_content
             )
             for name, table in self.medium.items()
         }
-        return {name: text for name, text in said.items() if text}
+        return {name: text for name, text in found.items() if text}
 
     @property
     def name(self) -> str:

@@ -53,7 +53,7 @@ def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
     file = open_settings(
         settings_path(path, "campaign.toml"), Campaign, "campaign", missing, move_keys
     )
-    file.content.lies_at(file.path)
+    file.content.set_file(file.path)
     # names first: no file is looked at with an instrument that nobody knows
     if wrong := of_names(file.content):
         raise file.error(wrong)

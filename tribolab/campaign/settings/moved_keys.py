@@ -31,30 +31,30 @@ def move_keys(content: Json) -> list[str]:
 
 
 def _move_to_model(content: Json) -> list[str]:
-    said: list[str] = []
+    lines: list[str] = []
     model = content.get("model", {})
     if not isinstance(model, dict):
-        return said
+        return lines
     for (table, old), new in _TO_MODEL.items():
         for name, before in _tables(content, table):
             if old in before and model.get(new, before[old]) == before[old]:
                 model[new] = before.pop(old)
-                said.append(_line(f"[{name}] {old}", f"[model] {new}"))
+                lines.append(_line(f"[{name}] {old}", f"[model] {new}"))
     for name, before in _tables(content, "joint"):
         now = _COMPUTE.get(str(before.get("compute")))
         if now is not None and model.get("joint", now) == now:
             model["joint"] = now
             del before["compute"]
-            said.append(_line(f"[{name}] compute", f"[model] joint = {str(now).lower()}"))
+            lines.append(_line(f"[{name}] compute", f"[model] joint = {str(now).lower()}"))
     if content.get("joint") == {}:
         del content["joint"]
     if model:
         content["model"] = model
-    return said
+    return lines
 
 
 def _move_labels(content: Json) -> list[str]:
-    said: list[str] = []
+    lines: list[str] = []
     runs = content.get("run")
     tables = [run for run in runs if isinstance(run, dict)] if isinstance(runs, list) else []
     for key in _LABELS:
@@ -65,8 +65,8 @@ def _move_labels(content: Json) -> list[str]:
                 run["labels"] = {**labels, key: run.pop(key)}
                 moved = True
         if moved:
-            said.append(_line(f"[[run]] {key}", f"[[run]] labels.{key}"))
-    return said
+            lines.append(_line(f"[[run]] {key}", f"[[run]] labels.{key}"))
+    return lines
 
 
 def _tables(content: Json, name: str) -> list[tuple[str, Json]]:

@@ -121,8 +121,8 @@ def _keys(table: Mapping[str, Any], parameters: Mapping[str, inspect.Parameter])
         default = field.get("default")
         if default is None and name in parameters:
             default = parameters[name].default
-        said = "required" if name in table.get("required", ()) else _default(default)
-        rows.append((f"`{name}`", _flat(field["description"]), what, example, said))
+        default_text = "required" if name in table.get("required", ()) else _default(default)
+        rows.append((f"`{name}`", _flat(field["description"]), what, example, default_text))
     return _table(("key", "meaning", "unit or type", "example", "default"), rows)
 
 
@@ -173,8 +173,8 @@ def _kind(field: Mapping[str, Any]) -> tuple[str, str]:
 
 def _bounds(kind: Mapping[str, Any]) -> str:
     signs = {"exclusiveMinimum": "&gt;", "minimum": "≥", "exclusiveMaximum": "&lt;", "maximum": "≤"}
-    said = [f"{sign} {kind[name]:g}" for name, sign in signs.items() if name in kind]
-    return f", {' and '.join(said)}" if said else ""
+    texts = [f"{sign} {kind[name]:g}" for name, sign in signs.items() if name in kind]
+    return f", {' and '.join(texts)}" if texts else ""
 
 
 def _default(default: Any) -> str:

@@ -18,7 +18,7 @@ from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.naming.files_named import named_by_files
 from tribolab.campaign.settings.naming.run_names import unique_names
 from tribolab.campaign.settings.problems import SettingsProblem, message
-from tribolab.campaign.settings.review import review_beside
+from tribolab.campaign.settings.review import read_decisions
 from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.core.errors import ConfigError
 from tribolab.core.provenance import sha256_of, sha256_of_file
@@ -135,7 +135,7 @@ def plan_runs(campaign: Campaign) -> Plan:
     names = unique_names([files for _, files in groups])
     settings = {id(entry): _settings(campaign, entry) for entry in campaign.run}
     places = {id(entry): _zero_stated_at(campaign, k) for k, entry in enumerate(campaign.run)}
-    decisions = review_beside(campaign.file)
+    decisions = read_decisions(campaign.file)
     reference = campaign.reference
     under = reference.files if reference.dead_weight is not None else None
     weighed = {file for pattern in under or () for file in matching_files(campaign.raw, pattern)}
@@ -208,10 +208,10 @@ def _label(entry: RunEntry, file: Path, key: Literal["mount", "specimen"]) -> st
 def _named(run: PlannedRun, campaign: Campaign) -> PlannedRun:
     """Return a run with what the names of its files say and nothing else states."""
     named = named_by_files(campaign.campaign.files_named, run.files)._asdict()
-    said = {key: value for key, value in named.items() if value and not getattr(run, key)}
-    if not said:
+    from_name = {key: value for key, value in named.items() if value and not getattr(run, key)}
+    if not from_name:
         return run
-    return replace(run, **said, config_sha256=sha256_of([run.config_sha256, said]))
+    return replace(run, **from_name, config_sha256=sha256_of([run.config_sha256, from_name]))
 
 
 def _weighed(run: PlannedRun, campaign: Campaign, weighed: set[Path]) -> PlannedRun:

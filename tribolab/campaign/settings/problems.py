@@ -73,16 +73,16 @@ def toml_error(error: tomllib.TOMLDecodeError, text: str, kind: str) -> str:
     The line is shown only of a text that is a TOML file to its first key or table: of another
     file nothing is told.
     """
-    said = str(error)
+    message_text = str(error)
     if not _FIRST_KEY.match(text):
-        return f"{said.split(' (at')[0]}; is it a {kind} file?"
-    if match := re.search(r"\(at line (\d+), column \d+\)", said):
+        return f"{message_text.split(' (at')[0]}; is it a {kind} file?"
+    if match := re.search(r"\(at line (\d+), column \d+\)", message_text):
         number = int(match[1])
         line = text.splitlines()[number - 1].strip() if number <= len(text.splitlines()) else ""
-        return f"line {number}: {said[: match.start()].strip()} in: {shown(line)}"
-    if said.endswith("(at end of document)"):
-        return f"line {len(text.splitlines())}: {said}"
-    return said
+        return f"line {number}: {message_text[: match.start()].strip()} in: {shown(line)}"
+    if message_text.endswith("(at end of document)"):
+        return f"line {len(text.splitlines())}: {message_text}"
+    return message_text
 
 
 def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[SettingsProblem]:

@@ -55,7 +55,7 @@ class DecisionEntry(NoSwitches):
         try:
             _ = self.decision
         except TribolabError as error:
-            raise ValueError(error.told("campaign")) from error
+            raise ValueError(error.message_for("campaign")) from error
         return self
 
 
@@ -114,7 +114,7 @@ def load_entries(path: Path) -> tuple[DecisionEntry, ...]:
     return _opened(path).content.decision
 
 
-def review_beside(campaign_file: Path) -> dict[str, tuple[Decision, ...]]:
+def read_decisions(campaign_file: Path) -> dict[str, tuple[Decision, ...]]:
     """Return the decisions that lie beside a campaign file, by run; none without such a file."""
     path = campaign_file.parent / REVIEW_FILE
     return load_review(path) if path.exists() else {}

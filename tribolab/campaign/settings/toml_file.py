@@ -117,8 +117,8 @@ def open_settings(
     try:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        said = problems.toml_error(error, text, kind)
-        raise ConfigError(f"{path}: not a TOML file: {said}") from error
+        reason = problems.toml_error(error, text, kind)
+        raise ConfigError(f"{path}: not a TOML file: {reason}") from error
     except (RecursionError, ValueError) as error:
         raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
     _check_entries(path, content)

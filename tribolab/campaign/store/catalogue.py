@@ -259,7 +259,7 @@ class Store(Catalogue):
         bool
             False if it is missing or was changed: then the part is computed again.
         """
-        return self.intact(kind, name, old) is not None and self.link_beside(old, new)
+        return self.intact(kind, name, old) is not None and self.link_file(old, new)
 
     def intact(self, kind: str, name: str, file: str) -> Path | None:
         """Return the data file of an earlier part; None if it is missing or was changed."""
@@ -272,7 +272,7 @@ class Store(Catalogue):
         same = (state.st_size, state.st_mtime_ns) == self.before.state(kind, name)
         return self.previous / file if same else None
 
-    def link_beside(self, old: str, new: str = "") -> bool:
+    def link_file(self, old: str, new: str = "") -> bool:
         """Link a file of the earlier results into the new ones; False if it is not intact."""
         if self.previous is None or (self._intact is not None and old not in self._intact):
             return False

@@ -150,8 +150,8 @@ class Ledger:
         wrong, there = [], set(walk(self.folder))
         for name in self.damaged(self.intact(whole=True)):
             if name in there:
-                beside = "" if name == MARKER else ", and keeps this version as well"
-                wrong.append(f"{name}: not as it was written; {cure}{beside}")
+                note = "" if name == MARKER else ", and keeps this version as well"
+                wrong.append(f"{name}: not as it was written; {cure}{note}")
             else:
                 wrong.append(f"{name}: missing; {cure}")
         return wrong

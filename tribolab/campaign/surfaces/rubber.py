@@ -105,7 +105,7 @@ def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
         path, label = surface.modulus_file
         sweep, unit = surface.modulus_read
         table = read_modulus(path, sweep, unit=unit)
-        findings.extend(Finding("note", f"{label}: {said}") for said in table.remarks)
+        findings.extend(Finding("note", f"{label}: {remark}") for remark in table.remarks)
         omega = table.angular_frequency
         findings.extend(_modulus_mismatch(stiffness, float(table(omega[0]).real), omega[0], label))
         return _Rubber(table, label, omega)

@@ -78,8 +78,8 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
     if not scans:
         raise AnalysisError("; ".join(f.message for f in findings) or "it has no scans")
     checked = dict(zip(scans, check_scan_set(list(scans.values()), **surface.quality), strict=True))
-    for path, said in checked.items():
-        findings += _objections(label[path], said)
+    for path, found in checked.items():
+        findings += _objections(label[path], found)
     shapes = {path: _shape(scan) for path, scan in scans.items()}
     sound = [path for path in scans if checked[path].status not in _FAILED] or list(scans)
     usual = Counter(shapes[path] for path in sound).most_common(1)[0][0]
@@ -101,21 +101,21 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
         share = 100 * filled.attrs["dropout_share"]
         text = f"{number} dropouts were filled ({share:.2g} % of heights)"
         findings.append(Finding("note", text))
-    checks = [_as_row(label[path], row) for path, said in checked.items() for row in said.rows]
+    checks = [_as_row(label[path], row) for path, found in checked.items() for row in found.rows]
     flagged = [checked[path].marked for path in alike]
     return CheckedScans(filled, _add_flags(together, flagged), findings, quality, checks)
 
 
-def _as_row(scan: str, said: FindingRow) -> Row:
+def _as_row(scan: str, row: FindingRow) -> Row:
     return {
         "scan": scan,
-        "check": said["check"],
-        "status": said["status"],
-        "variable": said["variable"],
-        "message": said["message"],
-        "where": said["where"],
-        "value": said["value"],
-        "unit": said["unit"],
+        "check": row["check"],
+        "status": row["status"],
+        "variable": row["variable"],
+        "message": row["message"],
+        "where": row["where"],
+        "value": row["value"],
+        "unit": row["unit"],
     }
 
 
@@ -132,7 +132,7 @@ def _read(
             for scan in traces.values():
                 fill_dropouts(scan)
         except TribolabError as error:
-            reason = _without_folder(error.told("campaign"), path)
+            reason = _without_folder(error.message_for("campaign"), path)
             findings.append(Finding("fail", f"scan {label} is left out: {reason}"))
             continue
         for trace, scan in traces.items():
@@ -155,7 +155,7 @@ def _trim(label: str, message: str) -> str:
     return rest if colon and label.endswith(name) else message
 
 
-def _objections(label: str, said: Findings) -> list[Finding]:
+def _objections(label: str, found: Findings) -> list[Finding]:
     return [
         Finding(
             "note" if row["status"] == "pass" else row["status"],
@@ -165,7 +165,7 @@ def _objections(label: str, said: Findings) -> list[Finding]:
             + ".",
             row["check"],
         )
-        for row in said.rows
+        for row in found.rows
         if row["status"] in ("suspect", *_FAILED) or row["noted"]
     ]
 
@@ -263,14 +263,14 @@ def spectra_of_scans(
     return groups, findings
 
 
-def _missing_waves(iso: xr.Dataset, held: float, seen: np.ndarray) -> list[Finding]:
+def _missing_waves(iso: xr.Dataset, in_band: float, seen: np.ndarray) -> list[Finding]:
     """Return a finding on waves missing from the rms height of the spectrum."""
     name, what = ("Sq", "map") if "Sq" in iso else ("Pq", "profile")
     whole = float(iso[name].mean())
-    if held >= MIN_SHARE_OF_HEIGHT.value * whole:
+    if in_band >= MIN_SHARE_OF_HEIGHT.value * whole:
         return []
     text = (
-        f"measured_rms_roughness {number(1e6 * held)} um holds the waves of "
+        f"measured_rms_roughness {number(1e6 * in_band)} um holds the waves of "
         f"{number(2e6 * np.pi / seen[-1])} to {number(2e6 * np.pi / seen[0])} um alone; the whole "
         f"{what} without its form has {name} = {number(1e6 * whole)} um, most of the rest in "
         f"longer waves. Take {name} for the height, and longer scans for the spectrum"

@@ -152,8 +152,8 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
     except Exception as error:  # recorded: one bad surface must not stop the others
         outcome = failed_surface(surface, *explain(error), time.monotonic() - began)
         if checked is not None:  # results of the checks may explain it
-            said = (*outcome.findings, *checked.findings)
-            outcome = replace(outcome, findings=said, checks=tuple(plain_value(checked.checks)))
+            merged = (*outcome.findings, *checked.findings)
+            outcome = replace(outcome, findings=merged, checks=tuple(plain_value(checked.checks)))
         return SurfaceRecord(outcome, sources)
     return SurfaceRecord(outcome, sources, rows, shaping)
 

@@ -47,7 +47,7 @@ def uncertainty_budget(budget: UncertaintyBudget, at: int | None = None) -> Figu
     share = 100 * table["contribution"].to_numpy() / mu
     kept = share >= _MIN_SHARE * share[:-1].max(initial=0.0)
     names, share = table.index[kept].to_numpy(dtype=str).tolist()[::-1], share[kept][::-1]
-    if "statistical only" in budget.says:
+    if "statistical only" in budget.caveats:
         names[0] += " (statistical only)"
     x = Axis("standard uncertainty", "% of µ", include=(0.0,), column="contribution_percent")
     numbers = {"part": np.array(names), "contribution_percent": share}

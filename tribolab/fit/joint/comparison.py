@@ -148,10 +148,10 @@ def compare_shear_stress_models(
     >>> curves = stribeck_curve(contact, psd, 1.4, [310.0, 910.0], 1e6, speed, cells=60)
     >>> measured = curves[["friction_coefficient"]].sel(sliding_speed=slice(9e-7, 1.1e-2))
     >>> measured["friction_coefficient_sem"] = 0.01 * measured.friction_coefficient
-    >>> told = compare_shear_stress_models(
+    >>> compared = compare_shear_stress_models(
     ...     measured, contact, psd, 1.4, measured["load"], curves=curves
     ... )
-    >>> told.table().words.iloc[1]
+    >>> compared.table().words.iloc[1]
     'constant shear stress is enough'
     """
     priors = given.pop("priors", None) or JointPriors()
@@ -197,12 +197,12 @@ def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
         prediction = float(apart.sum()) if apart.size > 1 else np.nan
         error = float(apart.std(ddof=1) * np.sqrt(apart.size)) if apart.size > 2 else np.nan
         stress = fit.marginals[0]
-        said = "the reference"
+        words = "the reference"
         if name != reference:
-            said = _conclude((name, _free(fit)), (reference, _free(first)), evidence, prediction)
+            words = _conclude((name, _free(fit)), (reference, _free(first)), evidence, prediction)
         models.append(
             ComparedModel(
-                name, evidence, prediction, error, stress.value, stress.low, stress.high, said
+                name, evidence, prediction, error, stress.value, stress.low, stress.high, words
             )
         )
     return ModelComparison(reference, tuple(models), dict(fits))
@@ -210,7 +210,7 @@ def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
 
 def _free(fit: JointFit) -> int:
     """Return the number of free parameters."""
-    return sum(np.isfinite(marginal.told) for marginal in fit.marginals)
+    return sum(np.isfinite(marginal.reduction) for marginal in fit.marginals)
 
 
 def _conclude(

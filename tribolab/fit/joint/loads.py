@@ -158,16 +158,18 @@ def _marginals(
         if logarithmic:
             values = np.exp(values)
         before = parameters.spread[place]
-        told = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
+        reduction = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
         value, *ends = map(float, values)
         if abs(value) < _ROUNDING_OF_INTERVAL * (ends[1] - ends[0]):
             value = 0.0  # except for rounding
-        marginals.append(Marginal(name, surface, value, ends[0], ends[1], ends[2], ends[3], told))
+        marginals.append(
+            Marginal(name, surface, value, ends[0], ends[1], ends[2], ends[3], reduction)
+        )
     for name, scale in (("level", priors.level), ("correlated", priors.correlated)):
         value, first, last = (posterior.shared_quantile(name, p) for p in (0.5, *_INTERVAL_ENDS))
         least, most = (scale * quantile for quantile in _RAYLEIGH_QUANTILES)
-        told = max(0.0, 1 - (last - first) / (most - least))
-        marginals.append(Marginal(name, "", value, first, last, least, most, told))
+        reduction = max(0.0, 1 - (last - first) / (most - least))
+        marginals.append(Marginal(name, "", value, first, last, least, most, reduction))
     return marginals
 
 

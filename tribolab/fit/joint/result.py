@@ -37,7 +37,7 @@ class Marginal:
         Median and ends of the 95 % interval, in SI.
     prior_low, prior_high
         Ends of the 95 % interval of the prior.
-    told
+    reduction
         Reduction [1] of the prior's standard deviation by the data: 0 if they contain no
         information; NaN for a fixed parameter.
     """
@@ -49,7 +49,7 @@ class Marginal:
     high: float
     prior_low: float
     prior_high: float
-    told: float
+    reduction: float
 
     @property
     def unit(self) -> str:
@@ -59,17 +59,17 @@ class Marginal:
     @property
     def identified(self) -> str:
         """Return "yes", "weakly", "not identified" or "held fixed"."""
-        if np.isnan(self.told):
+        if np.isnan(self.reduction):
             return "held fixed"
-        if self.told < limits.MIN_REDUCTION_OF_PRIOR.value:
+        if self.reduction < limits.MIN_REDUCTION_OF_PRIOR.value:
             return "not identified"
-        return "weakly" if self.told < limits.WEAK_REDUCTION_OF_PRIOR.value else "yes"
+        return "weakly" if self.reduction < limits.WEAK_REDUCTION_OF_PRIOR.value else "yes"
 
     @property
     def words(self) -> str:
         """Name of the parameter in words."""
-        said = _NAMES[self.name][1]
-        return f"{said} of {self.surface}" if self.surface else said
+        words = _NAMES[self.name][1]
+        return f"{words} of {self.surface}" if self.surface else words
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +148,7 @@ class JointFit:
                 "unit": marginal.unit,
                 "prior_low": marginal.prior_low,
                 "prior_high": marginal.prior_high,
-                "told": marginal.told,
+                "told": marginal.reduction,
                 "identified": marginal.identified,
             }
             for marginal in self.marginals
@@ -167,7 +167,7 @@ class JointFit:
             *(
                 _undetermined(marginal)
                 for marginal in self._physical
-                if marginal.told < limits.WEAK_REDUCTION_OF_PRIOR.value
+                if marginal.reduction < limits.WEAK_REDUCTION_OF_PRIOR.value
             ),
             *(_contradiction(marginal) for marginal in self._physical if _is_beyond(marginal)),
             *self._correlated(),
@@ -181,32 +181,32 @@ class JointFit:
 
     def _correlated(self) -> list[str]:
         """Return sentences on pairs of parameters that are hardly distinguishable."""
-        said = []
+        texts = []
         for i, j in np.argwhere(
             np.triu(np.abs(self.correlation), 1) > limits.MAX_CORRELATION.value
         ):
             first, second = self.marginals[i], self.marginals[j]
-            said.append(
+            texts.append(
                 f"{first.words} and {second.words} are hardly told apart: their errors correlate "
                 f"by {number(self.correlation[i, j], 2)}"
             )
-        return said
+        return texts
 
     def _misfit(self) -> list[str]:
         """Return sentences on a model that does not describe the curves, and on omitted points."""
-        said = []
+        texts = []
         if not self.described:
             off = percent(self.marginal("correlated").value)
-            said.append(
+            texts.append(
                 f"the model does not describe these curves: neighbouring speeds are off together "
                 f"by {off}, so the intervals say how such a model would have to be bent"
             )
         if self.skipped:
-            said.append(
+            texts.append(
                 f"{many(self.skipped, 'point')} with a friction not above zero "
                 f"{'is' if self.skipped == 1 else 'are'} not taken"
             )
-        return said
+        return texts
 
     def _repr_html_(self) -> str:
         """Return a table with median and interval of every parameter, and the sentences."""
@@ -215,11 +215,11 @@ class JointFit:
             f"<td>{marginal.identified}</td></tr>"
             for marginal in self.marginals
         )
-        said = "".join(f"<li>{sentence}</li>" for sentence in self.words)
+        items = "".join(f"<li>{sentence}</li>" for sentence in self.words)
         table = self.table().to_html(float_format=lambda value: f"{value:.4g}")
         return (
             "<table><thead><tr><th></th><th>median, 95 % interval</th><th>identified</th></tr>"
-            f"</thead><tbody>{rows}</tbody></table><ul>{said}</ul>"
+            f"</thead><tbody>{rows}</tbody></table><ul>{items}</ul>"
             f"<details><summary>all numbers in SI</summary>{table}</details>"
         )
 
@@ -257,7 +257,7 @@ def _contradiction(marginal: Marginal) -> str:
 
 def _undetermined(marginal: Marginal) -> str:
     """Return a sentence on a parameter that the data hardly determine."""
-    if marginal.told < limits.MIN_REDUCTION_OF_PRIOR.value:
+    if marginal.reduction < limits.MIN_REDUCTION_OF_PRIOR.value:
         return (
             f"{marginal.words}: not identified; the interval is what was assumed beforehand, "
             f"{in_words(marginal)}"

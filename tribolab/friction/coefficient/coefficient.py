@@ -254,10 +254,10 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
     if normal_rests is not None and settings.offset != "none":
         n0, n0_error = normal_rests.at(middle)
     pressed = _column(loads, "mean") - n0 if loads else np.ones(means.size)
-    held = np.where(pressed > 0, pressed, 1.0)
+    divisor = np.where(pressed > 0, pressed, 1.0)
     own_errors = _column(forces, "sem")
     zero, signs, pair = zero_of_run(
-        run, segments, "friction_force", parts, means, own_errors, held, middle, rests, settings
+        run, segments, "friction_force", parts, means, own_errors, divisor, middle, rests, settings
     )
     if normal_rests is None and (light := light_rest(run, segments, load, pressed)):
         zero = replace(zero, doubts=(*zero.doubts, of_light_rest(light, load, means.size)))
@@ -286,14 +286,14 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
     if not loads:
         empty = [force.samples == 0 for force in forces]
         few = np.array([_remark(force) for force in forces], dtype=object)
-        told = np.where(empty, "no samples that are numbers", few).astype(object)
+        reasons = np.where(empty, "no samples that are numbers", few).astype(object)
         trend = turn * _column(forces, "trend") - signs.sign * zero.slope
         data |= _memory(forces) | {"force_trend": trend}
-        return _table(data, told, zero, run, "")
+        return _table(data, reasons, zero, run, "")
 
-    ratio = (turn * means - signs.sign * zero.value) / held
+    ratio = (turn * means - signs.sign * zero.value) / divisor
     stated = run.attrs.get("uncertainty", {})
-    both = reversal_of(zero, pair, held, middle, ratio, rests, stated)
+    both = reversal_of(zero, pair, divisor, middle, ratio, rests, stated)
     pointwise: list[_RatioRemarks] = []
 
     def records() -> Iterator[tuple[np.ndarray, ...]]:
@@ -303,13 +303,13 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
             own += zero.value[i] - both.tilted[i]
             own *= signs.sign[i]
             np.subtract(turn[i] * force[s], own, out=own)
-            at, ratio, said = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
-            pointwise.append(said)
+            at, ratio, own_ratio = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
+            pointwise.append(own_ratio)
             yield at, ratio, *turns.angle(s, at)
 
     ratios = estimates_of(records())
-    remarks = [said.remark(ratio) for said, ratio in zip(pointwise, ratios, strict=True)]
-    mu, tilt = both.remove_tilt(_column(ratios, "mean"), signs.sign, held)
+    remarks = [own_ratio.remark(ratio) for own_ratio, ratio in zip(pointwise, ratios, strict=True)]
+    mu, tilt = both.remove_tilt(_column(ratios, "mean"), signs.sign, divisor)
 
     with np.errstate(divide="ignore", invalid="ignore"):
         in_common = np.hypot(mu * shared, idle.error) / pressed
@@ -318,7 +318,7 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
         # fluctuations of the load change friction and load together but not the ratio: the scatter
         # of the ratio, not of the force, determines the error
         known = np.isfinite(scatter)
-        errors_by_ratio = zero.error(np.where(known, scatter * held, own_errors))
+        errors_by_ratio = zero.error(np.where(known, scatter * divisor, own_errors))
         with np.errstate(divide="ignore", invalid="ignore"):
             error = np.where(known, errors_by_ratio / pressed, np.nan)
             return np.sqrt(error**2 + (mu * n0_error / pressed) ** 2 + in_common**2)
@@ -396,9 +396,9 @@ class _RatioRemarks(NamedTuple):
         """Return the remarks as text, with those of the mean."""
         if self.missing or estimate.samples == 0:
             return self.missing or "friction force is not a number"
-        said = [f"{self.left} samples without contact left out"] if self.left else []
-        said += filter(None, [_remark(estimate)])
-        return "; ".join(said)
+        remarks = [f"{self.left} samples without contact left out"] if self.left else []
+        remarks += filter(None, [_remark(estimate)])
+        return "; ".join(remarks)
 
 
 def _ratio(

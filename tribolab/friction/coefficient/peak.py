@@ -20,7 +20,7 @@ class Peak(NamedTuple):
     moment: float
     height: float
     error: float
-    stands: bool
+    clear: bool
 
 
 def noise_between(values: np.ndarray) -> float:
@@ -105,8 +105,8 @@ def _top_peak(
         spread = limits.MAX_MISFIT_OF_PEAK.value * noise / np.sqrt(2 * max(near.size - 3, 1))
         if scatter <= noise + spread:
             return moment, height, float(np.hypot(error, np.sqrt(max(scatter**2 - noise**2, 0.0))))
-    beside = smooth[[max(top - width, 0), min(top + width, smooth.size - 1)]]
-    step = float(smooth[top] - beside.min())
+    sides = smooth[[max(top - width, 0), min(top + width, smooth.size - 1)]]
+    step = float(smooth[top] - sides.min())
     between = 0.5 * np.sqrt(max(step**2 - 2 * noise**2 / width, 0.0))
     moment = float(time[top : top + width].mean())
     return moment, float(smooth[top]), float(np.hypot(noise / np.sqrt(width), between))

@@ -240,7 +240,7 @@ def _measure(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start) 
     ratio = values / load if load is not None else values
     noise = min(noise_between(ratio), noise_between(ratio[start.last - start.first :]))
     taken = _count_readings(ratio, start.last - start.first)
-    moment, height, error, stands = peak_of_start(time[:taken], ratio[:taken], sliding, sem, noise)
+    moment, height, error, clear = peak_of_start(time[:taken], ratio[:taken], sliding, sem, noise)
     pressed = float(median_of_known(load)) if load is not None else np.nan
     return _Peak(
         number=int(friction["segment"].values[i]),
@@ -249,7 +249,7 @@ def _measure(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start) 
         breakaway_force=height * pressed,
         breakaway_force_sem=error * pressed,
         friction_coefficient=sliding,
-        peak=int(stands),
+        peak=int(clear),
         breakaway_time=moment,
         waiting_time=start.rested,
         direction=way,

@@ -83,21 +83,21 @@ def decide(
             result = set_bounds(result, places[0], decision, run)
     count = segments.sizes["segment"]
     out = rejected(segments)
-    told: list[list[str]] = [[] for _ in range(count)]
+    reasons: list[list[str]] = [[] for _ in range(count)]
     if "decision" in segments:
-        told = [[text] if text else [] for text in segments["decision"].values]
+        reasons = [[text] if text else [] for text in segments["decision"].values]
     rows: list[Json] = list(segments.attrs.get(DECISIONS, []))
     for decision, places in zip(made, touched, strict=True):
         out[places] |= decision.action == REJECT
         # remarks on the whole run are not repeated for each segment, except the reason of rejection
         spoken = decision.interval is not None or decision.action == REJECT
         for place in places if spoken else ():
-            told[place].append(
+            reasons[place].append(
                 f"{DECISION_WORDS[decision.action]} by {decision.author}: {decision.reason}"
             )
         rows.append(decision.plain() | {"segments": [place + 1 for place in places]})
     result[REJECTED] = "segment", out.astype(np.int8)
-    result["decision"] = "segment", np.array(["; ".join(texts) for texts in told], dtype=object)
+    result["decision"] = "segment", np.array(["; ".join(texts) for texts in reasons], dtype=object)
     return stamp(result).assign_attrs({DECISIONS: rows})
 
 

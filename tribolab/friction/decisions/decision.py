@@ -99,10 +99,10 @@ class Decision:
         ):
             if low is not None and high is not None and not low < high:
                 raise AnalysisError(f"{what} ends at {high:g} s, not after it begins at {low:g} s")
-        anew = self.new_start is not None or self.new_stop is not None
-        if anew and self.action != NEW_BOUNDS:
+        has_bounds = self.new_start is not None or self.new_stop is not None
+        if has_bounds and self.action != NEW_BOUNDS:
             raise AnalysisError(f"only '{NEW_BOUNDS}' has new bounds, not '{self.action}'")
-        if self.action == NEW_BOUNDS and (self.interval is None or not anew):
+        if self.action == NEW_BOUNDS and (self.interval is None or not has_bounds):
             raise AnalysisError(
                 f"'{NEW_BOUNDS}' wants the interval that tells the segment, and a new beginning or "
                 "end"

@@ -94,8 +94,8 @@ def without_lines(records: np.ndarray, lines: list[list[float]]) -> np.ndarray:
     for k, cycles in enumerate(lines):
         if cycles:
             waves = np.column_stack([waves_of(each, samples) for each in cycles])
-            beside = np.column_stack([np.ones(samples), shape_of(0.0, samples), waves])
-            size, *_ = np.linalg.lstsq(beside, records[k], rcond=None)
+            columns = np.column_stack([np.ones(samples), shape_of(0.0, samples), waves])
+            size, *_ = np.linalg.lstsq(columns, records[k], rcond=None)
             calm[k] -= waves @ size[2:]
     return calm
 

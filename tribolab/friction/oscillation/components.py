@@ -64,7 +64,7 @@ def components(seen: Survey) -> tuple[Component, ...]:
         level = np.interp(seen.fine.frequency, seen.middle, seen.background)
         frequency, error, powers = gather(seen.fine, level, at)
         own = float(powers[0])
-        narrow = not lines or _stands_out(whole, core, at)
+        narrow = not lines or _exceeds_neighbours(whole, core, at)
         spread = _spread(seen, level, frequency)
         near = np.abs(seen.fine.frequency / frequency - 1) < 0.15
         near[seen.first[top] : stop] = True
@@ -131,13 +131,13 @@ def _harmonics(
     return covered
 
 
-def _stands_out(seen: Survey, core: np.ndarray, at: int) -> bool:
+def _exceeds_neighbours(seen: Survey, core: np.ndarray, at: int) -> bool:
     """Return whether a bin exceeds its neighbours significantly."""
     f, power = seen.fine.frequency, seen.fine.power
-    beside = ~core & ~_line(seen, at)
+    neighbours = ~core & ~_line(seen, at)
     levels = [np.interp(f[at], seen.middle, seen.background)]
     for factor in _SURROUNDINGS:
-        part = beside & (f > f[at] / factor) & (f < f[at] * factor)
+        part = neighbours & (f > f[at] / factor) & (f < f[at] * factor)
         if part.sum() > 2:
             levels.append(power[part].mean())
     half = seen.fine.freedom[at] / 2

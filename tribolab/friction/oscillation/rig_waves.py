@@ -174,7 +174,7 @@ class _Fit(NamedTuple):
     """Complex amplitude of each order, and mean power of its surroundings, in a piece (order)."""
 
     size: np.ndarray
-    beside: np.ndarray
+    around: np.ndarray
     freedom: np.ndarray
 
 
@@ -191,18 +191,18 @@ def _fit(
     at = angle[: count * size].reshape(count, size).mean(axis=1)
     columns = [f(k * at) for k in orders for f in (np.cos, np.sin)]
     design = np.stack([np.ones(count), np.linspace(-1, 1, count), *columns], axis=1)
-    told, *_ = np.linalg.lstsq(design, y, rcond=None)
-    rest = y - design @ told
-    amplitude = told[2::2] - 1j * told[3::2]
-    beside, freedom = np.zeros(orders.size), np.zeros(orders.size)
+    coefficients, *_ = np.linalg.lstsq(design, y, rcond=None)
+    rest = y - design @ coefficients
+    amplitude = coefficients[2::2] - 1j * coefficients[3::2]
+    around, freedom = np.zeros(orders.size), np.zeros(orders.size)
     for k, order in enumerate(orders):
         near = order + np.array(
             [sign * off / turns for off in _WIDTHS_TO_SURROUNDINGS for sign in (-1, 1)]
         )
         near = near[near > 1 / turns]
         power = abs(2 / count * np.exp(-1j * np.outer(near, at)) @ rest) ** 2
-        beside[k], freedom[k] = power.mean(), 2 * near.size
-    return _Fit(amplitude, beside, freedom)
+        around[k], freedom[k] = power.mean(), 2 * near.size
+    return _Fit(amplitude, around, freedom)
 
 
 def _significant_orders(
@@ -210,8 +210,8 @@ def _significant_orders(
 ) -> tuple[np.ndarray, float]:
     """Return the significant orders with a stable phase, and their share without noise."""
     size = np.array([fit.size for fit in fits])
-    power, beside = (abs(size) ** 2).mean(axis=0), np.mean([fit.beside for fit in fits], axis=0)
-    ratio = power / np.maximum(beside, 1e-300)
+    power, around = (abs(size) ** 2).mean(axis=0), np.mean([fit.around for fit in fits], axis=0)
+    ratio = power / np.maximum(around, 1e-300)
     chance = special.fdtrc(2 * len(fits), len(fits) * fits[0].freedom, ratio)
     clear = (chance < limits.ORDER_BY_CHANCE.value) & (
         ratio > limits.MIN_ORDER_OVER_SURROUNDINGS.value
@@ -225,5 +225,5 @@ def _significant_orders(
         )
     if not clear[orders <= limits.MAX_SOLE_ORDER.value].any():
         return np.zeros(0, int), 0.0
-    noise = beside[clear].sum() / power[clear].sum()
+    noise = around[clear].sum() / power[clear].sum()
     return np.flatnonzero(clear), float(np.sqrt(max(0.0, 1 - noise)))

@@ -112,7 +112,7 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
     return np.median(np.stack([padded[i : i + values.size] for i in range(3)]), axis=0)
 
 
-def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tuple[int, int]:
+def constant_part(data: MeanVelocities, first: int, last: int, drift: float) -> tuple[int, int]:
     """Return the samples [first, last) of a piece without ends that deviate from its level.
 
     Parameters
@@ -267,8 +267,8 @@ def _is_one_motion(
     longest = max(len(values) for values in near)
     if longest < limits.MIN_GRADUAL_END.value * count:
         return False
-    beside = np.concatenate([near[0][::-1], near[1]])
-    if np.abs(beside - level).max() <= drift / 4 * abs(level):
+    neighbours = np.concatenate([near[0][::-1], near[1]])
+    if np.abs(neighbours - level).max() <= drift / 4 * abs(level):
         return False
     values = np.concatenate([near[0][::-1], inside, near[1]])
     if values.size < count + 3:

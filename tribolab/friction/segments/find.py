@@ -140,7 +140,7 @@ def find_segments(
     slow = None if rest_speed is None else to_si(rest_speed, "m/s", name="rest_speed")
     constancy = ConstancyLimits(resolution, drift, min_samples, slow)
 
-    source, stands = velocity_source(run), 0.0
+    source, standstill = velocity_source(run), 0.0
     if run.attrs.get("rows_are") == "points":
         return _use_points(run, source)
     if stroke_middle is not None:
@@ -148,8 +148,8 @@ def find_segments(
     if source == "recorded":
         stretches = from_velocity(run, constancy, gap)
         if "stroke_m" not in run.attrs:
-            stretches, stands = without_standstills(run, stretches)
-            source = "position" if stands else source
+            stretches, standstill = without_standstills(run, stretches)
+            source = "position" if standstill else source
         if "stroke_m" in run.attrs:  # computed without noise: only zero velocity is rest
             stretches = [_mark_ramp(run, stretch) for stretch in stretches]
     elif source == "position":
@@ -164,8 +164,8 @@ def find_segments(
     ]
     stretches = loaded(run, stretches, constancy)
     plateaus = measured(run, stretches, source, share, position_range)
-    if stands:
-        plateaus.attrs["standstill_s"] = stands
+    if standstill:
+        plateaus.attrs["standstill_s"] = standstill
     by_chance = (
         plateaus.sizes["segment"]
         and _plateau_share(run, plateaus) < limits.MAX_TIME_OF_CHANCE_PLATEAUS.value

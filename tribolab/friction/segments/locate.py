@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.arrays.chunks import one_by_one
 from tribolab.friction.segments import limits
-from tribolab.friction.segments.constancy import MeanVelocities, held_part, is_constant
+from tribolab.friction.segments.constancy import MeanVelocities, constant_part, is_constant
 from tribolab.friction.segments.plateaus import (
     Noise,
     estimate_noise,
@@ -124,7 +124,7 @@ def _is_folded_noise(velocity: np.ndarray) -> bool:
     return bool(size.std() > 0.6 * mean > 0 and np.mean(size < 0.3 * mean) > 0.1)
 
 
-def held(
+def trimmed(
     data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
     """Keep the part of each plateau with constant speed; the rest becomes ramp.
@@ -143,7 +143,7 @@ def held(
         if piece.kind != "constant":
             result.append(piece)
             continue
-        first, last = held_part(data, piece.first, piece.last, constancy.drift)
+        first, last = constant_part(data, piece.first, piece.last, constancy.drift)
         kind = "constant" if is_constant(data, first, last, constancy.drift) else "ramp"
         parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
         result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]

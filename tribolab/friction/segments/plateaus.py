@@ -114,9 +114,9 @@ def is_commanded(velocity: np.ndarray, step: float) -> bool:
 
     Examples
     --------
-    >>> told = np.repeat([0.0, 2.0, 0.0, -2.0, 0.0, 2.0], 100)
+    >>> commanded = np.repeat([0.0, 2.0, 0.0, -2.0, 0.0, 2.0], 100)
     >>> read = np.round(np.linspace(0, 10, 600))
-    >>> [is_commanded(values, quantum(values)) for values in (told, read)]
+    >>> [is_commanded(values, quantum(values)) for values in (commanded, read)]
     [True, False]
     """
     if not step > 0:

@@ -170,14 +170,14 @@ def is_proven(
     change, error = change_along(readings, begin, end)
     if not change + limits.MIN_ERRORS_WITHIN_DRIFT.value * error <= most:
         return False
-    return any(_is_level(readings, begin, end, sides, beside) for beside in _SIDE_LENGTHS)
+    return any(_is_level(readings, begin, end, sides, side) for side in _SIDE_LENGTHS)
 
 
 def _is_level(
-    readings: Readings, begin: float, end: float, sides: tuple[bool, bool], beside: float
+    readings: Readings, begin: float, end: float, sides: tuple[bool, bool], side: float
 ) -> bool:
     """Return whether a level with flanks fits better than one smooth motion or one reversal."""
-    size = beside * (end - begin)
+    size = side * (end - begin)
     window = readings.within(begin - sides[0] * size, end + sides[1] * size)
     time, values = window.time, window.values - window.values.mean()
     if time.size < 12:

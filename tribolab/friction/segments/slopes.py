@@ -148,9 +148,9 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     near = far[:, None] + np.concatenate(
         [np.arange(-_RATE_SAMPLES, 0), np.arange(1, _RATE_SAMPLES + 1)]
     )
-    beside = np.where((near >= 0) & (near < position.size - 1), near, far[:, None])
-    around = _rates(time, position, beside)
-    around[beside == far[:, None]] = np.nan
+    neighbour = np.where((near >= 0) & (near < position.size - 1), near, far[:, None])
+    around = _rates(time, position, neighbour)
+    around[neighbour == far[:, None]] = np.nan
     usual = np.nanmedian(around, axis=1)
     size = np.where(around == 0, np.nan, np.abs(around))
     still = np.isnan(size).all(axis=1)

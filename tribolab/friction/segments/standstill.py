@@ -45,7 +45,7 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
         return stretches, 0.0
     noise, digit = slopes.position_noise(time, position), quantum(position)
     result: list[Stretch] = []
-    stands = agreeing = examined = 0.0
+    standstill = agreeing = examined = 0.0
     for stretch in one_by_one(stretches):
         first, last = np.searchsorted(time, [stretch.start, stretch.stop])
         size = _block(time[first:last], stretch, noise, digit)
@@ -58,11 +58,11 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
         examined += lasted
         agreeing += lasted * float(np.mean(np.abs(share - 1) < MAX_SPEED_MISFIT.value))
         begin, end = _standstills(share)
-        stands += lasted * float((end - begin).sum()) / share.size
+        standstill += lasted * float((end - begin).sum()) / share.size
         # a block at either end of a standstill may be half moving
         begin, end = np.maximum(begin - 1, 0) * size, (end + 1) * size
         result += _split(stretch, time[first:last], begin, end)
-    return (result, stands) if agreeing > 0.5 * examined else (stretches, 0.0)
+    return (result, standstill) if agreeing > 0.5 * examined else (stretches, 0.0)
 
 
 def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> int:

@@ -13,7 +13,13 @@ from tribolab.arrays.medians import median
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments import limits, slopes
 from tribolab.friction.segments.constancy import MeanVelocities
-from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
+from tribolab.friction.segments.locate import (
+    ConstancyLimits,
+    VelocityPiece,
+    locate,
+    moving,
+    trimmed,
+)
 from tribolab.friction.segments.turns import strokes_within
 from tribolab.friction.time_weights import without_gaps
 
@@ -103,7 +109,7 @@ def from_velocity(
         return _nothing(run, time.size)
     pieces, share = locate(time, velocity, constancy), 0.05
     pieces = moving(time, pieces, constancy, velocity)
-    pieces = held(MeanVelocities(time, velocity=velocity), pieces, constancy)
+    pieces = trimmed(MeanVelocities(time, velocity=velocity), pieces, constancy)
     return _split_at_gaps(run, time, pieces, constancy, max_gap, share)
 
 
@@ -115,7 +121,7 @@ def from_position(
     if time.size < 3 * limits.MIN_SAMPLES_OF_BLOCK.value:
         return _nothing(run, time.size)
     pieces = _by_slopes(time, position, constancy, limits.MIN_SAMPLES_OF_BLOCK.value)
-    pieces = held(MeanVelocities(time, position=position), pieces, constancy)
+    pieces = trimmed(MeanVelocities(time, position=position), pieces, constancy)
     pieces = strokes_within(time, position, pieces, constancy)
     pieces = moving(time, [_with_slope(time, position, p) for p in pieces], constancy)
     if constancy.rest_speed is None:

@@ -67,7 +67,7 @@ def load_reading(
     if zero.method != "half loop":
         found.append(_leak(run, segments, parts, pressed, offset, friction, zero))
     error = np.sqrt(sum(one.error**2 for one in found))
-    return LoadReading(error, tuple(said for one in found for said in one.doubts))
+    return LoadReading(error, tuple(doubt for one in found for doubt in one.doubts))
 
 
 def _retained(offset: np.ndarray, load: float) -> LoadReading:

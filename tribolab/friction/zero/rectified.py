@@ -143,11 +143,11 @@ def folded(trace: ForceTrace) -> Fold:
     >>> force = 9.0 * np.sin(np.linspace(0, 4 * np.pi, 400)).clip(-0.5, 0.5)
     >>> parts = [slice(30, 80), slice(130, 180), slice(230, 280), slice(330, 380)]
     >>> pressed = Pressed(None, parts, 0.5)
-    >>> def told(force):
+    >>> def shown(force):
     ...     mean = np.array([force[part].mean() for part in parts])
     ...     sign, error = np.array([1, -1, 1, -1]), np.full(4, 0.01)
     ...     return folded(ForceTrace(force, pressed, parts, mean, error, sign, np.nan)).kind
-    >>> told(force), told(np.abs(force)), told(force + 20)
+    >>> shown(force), shown(np.abs(force)), shown(force + 20)
     ('signed', 'rectified', 'signed')
     """
     known = np.isfinite(trace.mean)
@@ -174,11 +174,11 @@ def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
     low, high = sorted(levels)
     one_sign = "the friction force has one sign in both directions of sliding"
     if np.isfinite(trace.rest):
-        beside = abs(abs(trace.rest) - (high - low) / 2)
+        distance = abs(abs(trace.rest) - (high - low) / 2)
         between = abs(trace.rest - (high + low) / 2)
-        if between < 0.5 * beside:
+        if between < 0.5 * distance:
             return SIGNED
-        if beside < 0.5 * between:
+        if distance < 0.5 * between:
             return Fold("rectified", f"{one_sign}, and rests without load do not lie between them")
     dips, below, straight, clear, seen = _reversals(trace)
     if dips >= limits.MIN_REVERSALS_WITH_DIP.value:

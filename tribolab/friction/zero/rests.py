@@ -115,9 +115,9 @@ def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
         levels = _unloaded_parts(time, normal, _limits(segments), load)
     levels, partial = _without_partial(time, normal, levels, load, run, segments)
     signals = [normal] if friction is None else [normal, friction]
-    told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
+    estimates = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
     when = [float(time[level].mean()) for level in levels]
-    of_normal, of_friction = told[: len(levels)], told[len(levels) :]
+    of_normal, of_friction = estimates[: len(levels)], estimates[len(levels) :]
     known = [
         k
         for k, estimate in enumerate(of_friction)

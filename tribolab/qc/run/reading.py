@@ -82,8 +82,8 @@ def _assumed_values(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
 def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     """Compare the strokes stated in a file with those of its position signal."""
     attrs = subject.run.attrs
-    said = [float(attrs.get(name, np.nan)) for name in _STATED]
-    if not np.isfinite(said).any() or "position" not in subject.run:
+    stated_values = [float(attrs.get(name, np.nan)) for name in _STATED]
+    if not np.isfinite(stated_values).any() or "position" not in subject.run:
         return []
     try:
         strokes = find_strokes(subject.run)
@@ -99,15 +99,17 @@ def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     )
     words = ("{0:.4g} mm strokes", "{0:.4g} Hz", "{0:.0f} cycles")
     results = []
-    for stated, measured, text, unit in zip(said, found, words, (1e3, 1.0, 1.0), strict=True):
+    for stated, measured, text, unit in zip(
+        stated_values, found, words, (1e3, 1.0, 1.0), strict=True
+    ):
         apart = abs(measured - stated) / stated if stated > 0 else np.nan
         if not np.isfinite(apart):
             continue
         beyond = apart > limits["apart"] and abs(measured - stated) > (text == words[2])
-        told = f"the file states {text.format(unit * stated)}, its position signal shows "
-        told += text.format(unit * measured)
+        text_of_both = f"the file states {text.format(unit * stated)}, its position signal shows "
+        text_of_both += text.format(unit * measured)
         results.append(
-            Result("suspect" if beyond else "pass", "position", told, apart, cure=_STROKES)
+            Result("suspect" if beyond else "pass", "position", text_of_both, apart, cure=_STROKES)
         )
     return results
 

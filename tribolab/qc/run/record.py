@@ -108,19 +108,19 @@ def _step_changes(subject: RunSubject) -> np.ndarray:
 
 def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     joined = str(subject.run.attrs.get("clock_joined", ""))
-    told = [Result("pass", "time", joined, noted=True)] if joined else []
+    joins = [Result("pass", "time", joined, noted=True)] if joined else []
     if not {"step", "cycle"} & set(subject.run):
         if joined:
-            return told
+            return joins
         raise Skip("the instrument numbers no steps or cycles")
     changes = _step_changes(subject)
     if not changes.size:
-        return told or [Result("pass", "step", "one step", 1.0)]
+        return joins or [Result("pass", "step", "one step", 1.0)]
     text = f"the file holds {changes.size + 1} steps"
     where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
     where += " ..." if changes.size > 5 else ""
     text += f"; the first goes over to the others at {where}"
-    return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True), *told]
+    return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True), *joins]
 
 
 def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -151,16 +151,16 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         steady = bool(np.nanmin(values) == np.nanmax(values))
         if name in stated and (steady or _is_stated(subject, name)):
             good = uniform(values.size, GOOD)
-            told = (
+            reason = (
                 f"{'one value for all of the run: it is ' if steady else ''}stated and not measured"
             )
-            results.append(Result("pass", name, told, 0.0, flags=good))
+            results.append(Result("pass", name, reason, 0.0, flags=good))
             continue
         if name == "normal_force" and _is_set(subject, values):
             good = uniform(values.size, GOOD)
-            told = "constant during the run while friction changes: a set-point and not "
-            told += "measured, or the sensor is dead; name a set-point set_normal_force"
-            results.append(Result("suspect", name, told, 0.0, flags=good))
+            reason = "constant during the run while friction changes: a set-point and not "
+            reason += "measured, or the sensor is dead; name a set-point set_normal_force"
+            results.append(Result("suspect", name, reason, 0.0, flags=good))
             continue
         flags = _drop_rests(subject, values, signals.stuck(values, limits["chance"]))
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
@@ -194,8 +194,8 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
         if _is_stated(subject, name):
-            told = "stated and not measured"
-            results.append(Result("pass", name, told, 0.0, flags=uniform(values.size, GOOD)))
+            reason = "stated and not measured"
+            results.append(Result("pass", name, reason, 0.0, flags=uniform(values.size, GOOD)))
             continue
         flags = _drop_rests(subject, values, signals.saturation(values))
         ends = f"{np.nanmax(values):.6g} or {np.nanmin(values):.6g} {subject.unit(name)}"

@@ -52,8 +52,8 @@ def _normal_force_error(subject: RunSubject, limits: Mapping[str, float]) -> lis
             return moved
         raise Skip("the set-point of the normal force is not known")
     error = (means - zero) / target - 1
-    said = segment_results(subject, "normal_force", error, limits, "normal force off its set-point")
-    return moved if moved and said[0].status == "pass" else said
+    off = segment_results(subject, "normal_force", error, limits, "normal force off its set-point")
+    return moved if moved and off[0].status == "pass" else off
 
 
 def _load_moves(
@@ -151,12 +151,14 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     if not {"sliding_velocity", "position"} <= set(subject.run):
         raise Skip("velocity and position were not both recorded")
     results = []
-    if stands := float(subject.segments.attrs.get("standstill_s", 0.0)):
+    if standstill := float(subject.segments.attrs.get("standstill_s", 0.0)):
         text = (
-            f"the position does not change for at least {duration(stands)} while the recorded "
+            f"the position does not change for at least {duration(standstill)} while the recorded "
             "velocity is not zero; segments and speeds are taken from the position"
         )
-        results.append(Result("suspect", "position", text, stands, "s", cure=_CURE_OF_STANDSTILL))
+        results.append(
+            Result("suspect", "position", text, standstill, "s", cure=_CURE_OF_STANDSTILL)
+        )
     position = subject.signals["position"]
     known = np.isfinite(position)
     noise = position_noise(subject.time[known], position[known])
@@ -173,10 +175,10 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     off = np.where(resolved, slopes / velocity - 1, np.nan)
     if results and not np.isfinite(off).any():
         return results
-    told = segment_results(
+    results_of_segments = segment_results(
         subject, "sliding_velocity", off, limits, "d(position)/dt off the velocity"
     )
-    return [*results, *told]
+    return [*results, *results_of_segments]
 
 
 def _slope(subject: RunSubject, part: slice, noise: float) -> tuple[float, float]:

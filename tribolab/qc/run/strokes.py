@@ -141,10 +141,10 @@ def _unequal_periods(subject: RunSubject, limits: Mapping[str, float]) -> list[R
         return []
     first, count = int(np.flatnonzero(odd)[0]), int(odd.sum())
     where = subject.segment_label(first)
-    said = str(slip["remark"].values[first])
+    slip_remark = str(slip["remark"].values[first])
     text = (
         f"the period of stick-slip is not determined in {Count(count):segment|segments}: in "
-        f"{where}, {said[said.index(AT_ODDS) :]}"
+        f"{where}, {slip_remark[slip_remark.index(AT_ODDS) :]}"
     )
     cure = "Slide further at this speed, or see in the strokes figure which of the two is right."
     signal = subject.friction_signal or ""

@@ -12,15 +12,15 @@ from tribolab.qc.run.subject import RunSubject
 def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     friction = subject.friction
     signal = subject.required_friction_signal
-    told = _doubts(subject, "zero_reference", signal)
+    doubts = _doubts(subject, "zero_reference", signal)
     method = str(friction.attrs.get("offset", ""))
-    return told or [Result("pass", signal, f"the zero is from: {method}")]
+    return doubts or [Result("pass", signal, f"the zero is from: {method}")]
 
 
 def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     signal = subject.required_friction_signal
-    told = _doubts(subject, "rectified", signal)
-    return told or [Result("pass", signal, "nothing says that the signal lost its sign")]
+    doubts = _doubts(subject, "rectified", signal)
+    return doubts or [Result("pass", signal, "nothing says that the signal lost its sign")]
 
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:

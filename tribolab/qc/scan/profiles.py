@@ -82,10 +82,10 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
         limit = max(factor * max(scale, least), 3.0 * digit)
         # a flank of several points is not a jump: compare with the steps next to it
         signed = np.nan_to_num(block - middle)
-        beside = np.zeros(size.size)
-        beside[1:] = np.maximum(beside[1:], np.maximum(signed[:-1] * np.sign(signed[1:]), 0.0))
-        beside[:-1] = np.maximum(beside[:-1], np.maximum(signed[1:] * np.sign(signed[:-1]), 0.0))
-        jumps_at = np.flatnonzero((size > limit) & (size > 3.0 * beside))
+        nearby = np.zeros(size.size)
+        nearby[1:] = np.maximum(nearby[1:], np.maximum(signed[:-1] * np.sign(signed[1:]), 0.0))
+        nearby[:-1] = np.maximum(nearby[:-1], np.maximum(signed[1:] * np.sign(signed[:-1]), 0.0))
+        jumps_at = np.flatnonzero((size > limit) & (size > 3.0 * nearby))
         if jumps_at.size:
             usual = np.delete(
                 size, np.unique(np.clip([jumps_at - 1, jumps_at, jumps_at + 1], 0, size.size - 1))
@@ -167,13 +167,13 @@ def pool_bands(
     >>> pool_bands(np.array([[0.0, 1.0, 3.0, 5.0]]), np.array([1.0, 1.0, 2.0, 1.0]), 2.0)
     (array([[0.5, 3. ]]), array([2., 2.]))
     """
-    starts, held = [], 0.0
+    starts, total = [], 0.0
     for band, weight in enumerate(weights):  # loop over some forty bands
-        if held == 0.0:
+        if total == 0.0:
             starts.append(band)
-        held += weight
-        if held >= fewest:
-            held = 0.0
+        total += weight
+        if total >= fewest:
+            total = 0.0
     if not starts:
         return logs, weights
     sums = np.add.reduceat(weights, starts)

@@ -119,13 +119,13 @@ def _repeats(
     )
     others = tuple(name for name in SCAN_CHECKS if name != _REPEATS)
     checked = check_scans(together, limits=limits, skip=(*skip, *others))
-    [said] = [result for check, result in checked.results if check.name == _REPEATS]
-    if said.status not in ("suspect", "fail") or len(scans) == 2:
-        return dict.fromkeys(numbers, said)
-    odd = names.index(said.where)
+    [repeats] = [result for check, result in checked.results if check.name == _REPEATS]
+    if repeats.status not in ("suspect", "fail") or len(scans) == 2:
+        return dict.fromkeys(numbers, repeats)
+    odd = names.index(repeats.where)
     fine = f"agrees with the other scans but {names[odd]}"
-    right = Result("pass", "height", fine, said.value)
-    return {number: said if n == odd else right for n, number in enumerate(numbers)}
+    right = Result("pass", "height", fine, repeats.value)
+    return {number: repeats if n == odd else right for n, number in enumerate(numbers)}
 
 
 def _add_repeats(findings: Findings, repeats: Result) -> Findings:

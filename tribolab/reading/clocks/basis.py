@@ -105,7 +105,7 @@ class Basis:
         moved = _path(self.time, np.abs(velocity))
         ends = np.append(stops[1:], len(way))
         rested, slid = np.zeros(len(way)), np.full(len(way), np.inf)
-        held = np.zeros(len(way))
+        last_position = np.zeros(len(way))
         for first, end in zip(stops, ends, strict=True):
             part = slice(first, end)
             begun = np.flatnonzero(way[part])
@@ -113,14 +113,14 @@ class Basis:
             rested[part] = np.minimum(self.time[part], self.time[start]) - self.time[first]
             slid[part] = moved[part] - moved[start - 1]
             slid[first:start] = 0.0
-            held[part] = last[first]
+            last_position[part] = last[first]
         usual = float(median(rested[np.minimum(ends, len(way)) - 1]))
         if usual <= 0.0:  # no relaxation in rests of one sample
             return
         for tau in _RELAXATION_TIMES:
             for length in _RECOVERY_LENGTHS:
                 back = np.exp(-slid / (self.longest * length))
-                yield held * -np.expm1(-rested / (usual * tau)) * back
+                yield last_position * -np.expm1(-rested / (usual * tau)) * back
 
     def _ramps(
         self, velocity: Array, way: NDArray[np.int64], last: NDArray[np.int64], length: float
@@ -169,9 +169,9 @@ def _speeds(velocity: Array, last: Ways) -> Iterator[Array]:
         return
     knots = np.linspace(low, high, min(_SPEED_FUNCTIONS, 2 + int(2 * (high - low))))
     index = np.maximum.accumulate(np.where(moving, np.arange(len(speed)), 0))
-    held = np.log10(np.maximum(speed, 10.0 ** (low - 1)))[index]
+    log_speed = np.log10(np.maximum(speed, 10.0 ** (low - 1)))[index]
     for hat in np.eye(len(knots))[1:]:
-        yield last * np.interp(held, knots, hat)
+        yield last * np.interp(log_speed, knots, hat)
 
 
 class Play:

@@ -131,7 +131,7 @@ def join_clocks(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarr
     pieces = [piece for content in contents for piece in content.pieces]
     if dialect.time.restart != "continue" and not wrap:
         return {}
-    parts, said = [], []
+    parts, texts = [], []
     for piece in pieces:
         time = piece.columns["time"]
         part = np.zeros(len(time), dtype=np.int32)
@@ -142,17 +142,17 @@ def join_clocks(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarr
                 starts = starts._replace(starts=kept)
             time += starts.offsets()
             part[[start.row for start in starts.starts if not start.period]] = 1
-            said += _in_words(starts, time)
+            texts += _in_words(starts, time)
         parts.append(np.cumsum(part, dtype=np.int32))
     if dialect.time.restart == "continue" and len(pieces) > 1:
         _join_pieces(pieces, dialect)
-    anew = any(part[-1] for part in parts if part.size)
-    told: dict[str, np.ndarray | str] = {"joined": "; ".join(said)} if said else {}
-    if anew:
+    restarts = any(part[-1] for part in parts if part.size)
+    columns: dict[str, np.ndarray | str] = {"joined": "; ".join(texts)} if texts else {}
+    if restarts:
         before = np.cumsum([0, *(part[-1] + 1 if part.size else 0 for part in parts[:-1])])
         numbers = [part + first + 1 for part, first in zip(parts, before, strict=True)]
-        told["part"] = np.concatenate(numbers).astype(np.int32)
-    return told
+        columns["part"] = np.concatenate(numbers).astype(np.int32)
+    return columns
 
 
 def _wrap(dialect: Dialect) -> float:
@@ -160,15 +160,15 @@ def _wrap(dialect: Dialect) -> float:
 
 
 def _in_words(faults: Faults, time: np.ndarray) -> list[str]:
-    said = []
-    anew = [start.row + 1 for start in faults.starts if not start.period]
-    if anew:
-        rows = ", ".join(str(row) for row in anew[:5]) + (" ..." if len(anew) > 5 else "")
-        said.append(f"the clock restarts within the table, {_times(len(anew))}, at row {rows}")
+    texts = []
+    restarts = [start.row + 1 for start in faults.starts if not start.period]
+    if restarts:
+        rows = ", ".join(str(row) for row in restarts[:5]) + (" ..." if len(restarts) > 5 else "")
+        texts.append(f"the clock restarts within the table, {_times(len(restarts))}, at row {rows}")
     periods = [start.period for start in faults.starts if start.period]
     if periods:
-        said.append(f"the clock wraps after {periods[0]:.9g} s, {_times(len(periods))}")
-    return said
+        texts.append(f"the clock wraps after {periods[0]:.9g} s, {_times(len(periods))}")
+    return texts
 
 
 def _times(count: int) -> str:
@@ -256,11 +256,11 @@ def _reasons(time: np.ndarray, good: np.ndarray, faults: Faults) -> dict[str, in
     counts = {"without a time": int(np.count_nonzero(lost & faults.missing))}
     lost &= ~faults.missing
     if faults.starts:
-        anew = lost & (np.arange(len(time)) >= faults.starts[0].row)
+        later = lost & (np.arange(len(time)) >= faults.starts[0].row)
         counts["after the clock restarted (restart = 'continue' would keep them)"] = int(
-            np.count_nonzero(anew)
+            np.count_nonzero(later)
         )
-        lost &= ~anew
+        lost &= ~later
     counts["whose time is not later than before (on_repeat = 'interpolate' would keep them)"] = int(
         np.count_nonzero(lost)
     )

@@ -132,12 +132,12 @@ def fit_jointly(
     first = _samples(force_time, force, basis, shift, span)
     models = []
     for name, table in basis.models:
-        told = _shift_of_model(force_time, force, basis, table, shift, span, finest, first)
-        if told is not None:
-            models.append((name, table, told))
+        answer = _shift_of_model(force_time, force, basis, table, shift, span, finest, first)
+        if answer is not None:
+            models.append((name, table, answer))
     if not models:
         return []
-    shifts = np.array([told[0] for _, _, told in models])
+    shifts = np.array([answer[0] for _, _, answer in models])
     # the same samples for all models, so that residuals are comparable
     half = 0.5 * float(np.ptp(shifts)) + finest
     used = _samples(force_time, force, basis, 0.5 * float(shifts.min() + shifts.max()), half)
@@ -300,7 +300,7 @@ class _Fit:
 
     def squares(self) -> tuple[Array, Array, Array]:
         """Return residual sums of squares, amplitudes, and shares of inertia (shift)."""
-        normals, told, whole = [], [], []
+        normals, rights, whole = [], [], []
         for shift in self.shifts:
             columns = self.columns(shift)
             # removing the drift from the products is faster than from the columns
@@ -308,8 +308,8 @@ class _Fit:
             products = columns.T @ columns
             whole.append(products.diagonal())
             normals.append(products - along[:-1].T @ along[:-1])
-            told.append(along[-1])
-        normal, right = np.stack(normals), np.stack(told)[:, :, None]
+            rights.append(along[-1])
+        normal, right = np.stack(normals), np.stack(rights)[:, :, None]
         own = np.einsum("sii->si", normal)
         ridge = _RIDGE_PENALTY * own + 1e-12 * own.sum(axis=1, keepdims=True)
         # what is left of motion that the drift explains is rounding

@@ -117,8 +117,8 @@ def _shift(
         )
         if estimate is not None:
             ways = {
-                name: f"{told.shift:.6g} s +- {told.uncertainty:.2g} s"
-                for name, told in estimate.ways.items()
+                name: f"{estimate_of_way.shift:.6g} s +- {estimate_of_way.uncertainty:.2g} s"
+                for name, estimate_of_way in estimate.ways.items()
             }
             attrs = {
                 "clock_shift_uncertainty_s": estimate.uncertainty,

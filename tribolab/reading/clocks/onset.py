@@ -148,12 +148,12 @@ def _misfit(onsets: list[Onset], shifts: Array) -> Array:
         left = np.full(len(shifts), np.inf)
         n, force = len(onset.force), onset.force - onset.force.mean()
         square = float(force @ force)
-        beside = np.stack([force, np.ones(n)], axis=1)
+        drift = np.stack([force, np.ones(n)], axis=1)
         for d in _STICK_DISTANCES * onset.length:
             rise = way * (-1.0 / d)
             np.expm1(rise, out=rise)
-            told, whole = (rise @ beside).T
+            explained, whole = (rise @ drift).T
             norm = np.maximum(np.einsum("sn,sn->s", rise, rise) - whole**2 / n, 1e-12)
-            left = np.minimum(left, square - told**2 / norm)
+            left = np.minimum(left, square - explained**2 / norm)
         total += 0.5 * n * np.log(np.maximum(left, 1e-9 * square + 1e-30))
     return total

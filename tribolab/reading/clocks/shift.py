@@ -34,7 +34,7 @@ from tribolab.reading.clocks.motion import Motion, clean_motion
 from tribolab.reading.clocks.onset import refine_by_onsets
 from tribolab.reading.clocks.starts import (
     Logs,
-    ToldByStarts,
+    StartShift,
     changes,
     shift_from_starts,
 )
@@ -43,7 +43,7 @@ from tribolab.reading.clocks.starts import (
 _MAX_POSSIBLE_VALUE = 1e12
 
 
-class Told(NamedTuple):
+class Estimate(NamedTuple):
     """Result of one method: shift in the middle of the motion log [s], standard deviation [s]."""
 
     shift: float
@@ -63,7 +63,7 @@ class ShiftEstimate(NamedTuple):
     explained: float
     rate: float = 0.0
     rate_uncertainty: float = limits.CLOCK_RATE_ERROR.value
-    ways: dict[str, Told] = {}  # noqa: RUF012 - never changed
+    ways: dict[str, Estimate] = {}  # noqa: RUF012 - never changed
     refused: str = ""
 
 
@@ -155,7 +155,7 @@ def _estimated(
     vague = uncertainty > sharp and not placed
     if vague and (weak or not wide):
         return None
-    ways = {"classes": Told(shift, uncertainty)}
+    ways = {"classes": Estimate(shift, uncertainty)}
     # friction remains at rest, so the shift may be late by up to a rest
     span = max(8.0 * coarse.half, 1.25 * float(median(np.diff(motion_time[changes(way)]))))
     logs = Logs(force_time, force, motion_time, motion.velocity, way)
@@ -169,10 +169,10 @@ def _estimated(
     def allowed(at: Array) -> NDArray[np.bool_]:
         return (np.abs(at - shift) <= reach) & (1.0 - fit.ratios(at) < unexplained)
 
-    told = shift_from_starts(logs, shift, span, allowed)
+    seen = shift_from_starts(logs, shift, span, allowed)
     estimate = ShiftEstimate(shift, uncertainty, ratio)
-    if told is not None:
-        estimate = ShiftEstimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
+    if seen is not None:
+        estimate = ShiftEstimate(seen.shift, seen.uncertainty, fit.ratio(seen.shift), *seen[2:])
     starts, onsets, agree = estimate, estimate, True
     if estimate.rate == 0.0:
         onsets = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
@@ -182,19 +182,19 @@ def _estimated(
             <= limits.MAX_ERRORS_OF_AGREEMENT.value * starts.uncertainty
         )
         vaguer = agree and onsets.uncertainty > starts.uncertainty
-        estimate = starts if told is not None and vaguer else onsets
+        estimate = starts if seen is not None and vaguer else onsets
     # slack or sticking would delay slow starts more, which only the first method uses
-    twice = wide and not weak and told is not None and onsets is not starts
+    twice = wide and not weak and seen is not None and onsets is not starts
     twice = twice and _starts_agree(starts, onsets, basis.stroke)
     if vague and not twice:
         return None
     # starts with a large error were searched at a wrong position
     if not twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
-        anew = ShiftEstimate(shift, uncertainty, ratio)
-        anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
-        estimate = anew if anew.uncertainty < estimate.uncertainty else estimate
+        repeated = ShiftEstimate(shift, uncertainty, ratio)
+        repeated = _sharpened(repeated, force_time, force, motion_time, motion.velocity, fit)
+        estimate = repeated if repeated.uncertainty < estimate.uncertainty else estimate
     if estimate.shift != shift:
-        ways["starts"] = Told(estimate.shift, estimate.uncertainty)
+        ways["starts"] = Estimate(estimate.shift, estimate.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     durations = np.diff(motion_time[changes(way)])
     stroke = float(median(durations[durations > 0.1 * durations.max()]))  # or rest
@@ -209,21 +209,27 @@ def _estimated(
     if joint is not None:
         apart = limits.CLOCK_RATE_ERROR.value if estimate.rate == 0.0 else estimate.rate_uncertainty
         error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
-        ways["motion"] = Told(joint.shift, error)
+        ways["motion"] = Estimate(joint.shift, error)
         if weak and not placed and abs(joint.shift - estimate.shift) > 0.5 * sharp:
             return None
         stroke = joint.stroke
     sharp_fit = (
         joint is not None and joint.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
     )
-    if sharp_fit and told is not None and not agree and _agree(told, ways["motion"]):
-        estimate, ways["starts"] = starts, Told(*starts[:2])  # two methods contradict the onsets
+    if sharp_fit and seen is not None and not agree and _agree(seen, ways["motion"]):
+        estimate, ways["starts"] = (
+            starts,
+            Estimate(*starts[:2]),
+        )  # two methods contradict the onsets
     known = (
         "starts" in ways and estimate.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
     )
     if twice and _contradicted(ways, stroke):
         other = onsets if estimate is starts else starts
-        combined, part = _widened(ways["starts"], Told(*other[:2])), limits.MIN_ERROR_OF_SHIFT.value
+        combined, part = (
+            _widened(ways["starts"], Estimate(*other[:2])),
+            limits.MIN_ERROR_OF_SHIFT.value,
+        )
     elif wide and known and "motion" in ways and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], limits.MIN_ERROR_OF_SHIFT.value
         if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
@@ -286,7 +292,7 @@ def _starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -
     )
 
 
-def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
+def _contradicted(ways: dict[str, Estimate], stroke: float) -> bool:
     """Whether starts, confirmed by two methods, exclude the fit by the motion.
 
     It is excluded if the difference exceeds the errors of both and the tolerance for the duration
@@ -300,13 +306,13 @@ def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
     ) > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke and not _agree(starts, motion)
 
 
-def _agree(first: Told | ToldByStarts, second: Told) -> bool:
+def _agree(first: Estimate | StartShift, second: Estimate) -> bool:
     """Whether two results agree within their errors."""
     error = np.hypot(first.uncertainty, second.uncertainty)
     return bool(abs(first.shift - second.shift) <= limits.MAX_ERRORS_OF_AGREEMENT.value * error)
 
 
-def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
+def _confirmed(starts: Estimate, classes: Estimate, stroke: float) -> bool:
     """Whether velocity classes confirm the result of the starts, for a stroke duration [s]."""
     return (
         _agree(starts, classes)
@@ -314,7 +320,7 @@ def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
     )
 
 
-def _widened(starts: Told, other: Told) -> Told:
+def _widened(starts: Estimate, other: Estimate) -> Estimate:
     """Increase the uncertainty of starts by half the difference from another method.
 
     If friction follows the speed slowly, velocity classes are late, and starts may be; if the stage
@@ -333,16 +339,16 @@ def _refined(fit: Classes, shift: float, around: float) -> float:
     return shift
 
 
-def _combined(first: Told, second: Told) -> Told:
+def _combined(first: Estimate, second: Estimate) -> Estimate:
     """Return the mean of two results; its standard deviation includes their difference."""
     apart = second.shift - first.shift
-    weights = np.array([1.0 / (told.uncertainty**2 + apart**2) for told in (first, second)])
+    weights = np.array([1.0 / (each.uncertainty**2 + apart**2) for each in (first, second)])
     share = float(weights[1] / weights.sum())
     inner = (1.0 - share) * first.uncertainty + share * second.uncertainty
     error = np.sqrt(
         inner**2 + max(share * (1.0 - share), limits.MIN_SHARE_OF_DIFFERENCE.value) * apart**2
     )
-    return Told(first.shift + share * apart, limits.ERROR_OF_METHODS.value * float(error))
+    return Estimate(first.shift + share * apart, limits.ERROR_OF_METHODS.value * float(error))
 
 
 def _doubt(
@@ -358,8 +364,8 @@ def _doubt(
         estimate.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
         and "motion" in estimate.ways
     ):
-        told = ", ".join(f"{name} {way.shift:.4g} s" for name, way in estimate.ways.items())
-        return f"the ways to tell it disagree: {told}"
+        text = ", ".join(f"{name} {way.shift:.4g} s" for name, way in estimate.ways.items())
+        return f"the ways to tell it disagree: {text}"
     if estimate.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
         return f"no way tells it sharply: {estimate.shift:.4g} s to {estimate.uncertainty:.2g} s"
     left = (

@@ -30,7 +30,7 @@ _FIRST_SAMPLES = 0.5  # samples: the distance within them is the shortest length
 _CURVE_TERMS = 8  # number of exponentials in a start's curve
 
 
-class ToldByStarts(NamedTuple):
+class StartShift(NamedTuple):
     """Shift in the middle of the motion log [s] and rate, with their standard deviations."""
 
     shift: float
@@ -164,7 +164,7 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
 
 def shift_from_starts(
     logs: Logs, shift: float, span: float, allowed: Callable[[Array], NDArray[np.bool_]]
-) -> ToldByStarts | None:
+) -> StartShift | None:
     """Estimate the shift from the starts of motion.
 
     Parameters
@@ -201,12 +201,12 @@ def shift_from_starts(
             # an uninformative start gives 0.58 of the half width; a maximum at the end is cut off
             if error < 0.4 * half and abs(moments - centre[k]) < 0.7 * half:
                 seen[:, k] = moments, error
-        told = np.isfinite(seen[1])
-        if not told.any():
+        found = np.isfinite(seen[1])
+        if not found.any():
             return None
         # no resolution between samples
         errors = np.hypot(seen[1], sampling)
-        fit = _combined(since[told], seen[0][told], errors[told], sampling.min())
+        fit = _combined(since[found], seen[0][found], errors[found], sampling.min())
         if step < sampling.min():
             return fit
         centre = fit.shift + fit.rate * since
@@ -265,7 +265,7 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
     return -0.5 * freedom * np.log(relative / relative.min())
 
 
-def _combined(since: Array, shifts: Array, errors: Array, common: float) -> ToldByStarts:
+def _combined(since: Array, shifts: Array, errors: Array, common: float) -> StartShift:
     """Combine the starts' shifts, at times since the middle; all share a `common` error."""
     design = np.stack([np.ones_like(since), since], axis=1)
     prior = np.diag([0.0, limits.CLOCK_RATE_ERROR.value**-2])
@@ -273,21 +273,21 @@ def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told
     half = np.cumsum(errors[order] ** -2.0)
     # start at the weighted median, so that outliers do not matter
     middle = shifts[order][np.searchsorted(half, 0.5 * half[-1])]
-    told = np.array([middle, 0.0])
+    solution = np.array([middle, 0.0])
     for _ in range(50):
-        apart = (shifts - design @ told) / errors
+        apart = (shifts - design @ solution) / errors
         weight = errors**-2.0 / (1.0 + (apart / 2.0) ** 2)
-        told = np.linalg.solve(
+        solution = np.linalg.solve(
             design.T @ (weight[:, None] * design) + prior, design.T @ (weight * shifts)
         )
-    apart = (shifts - design @ told) / errors
+    apart = (shifts - design @ solution) / errors
     squares = float((errors**2 * weight) @ apart**2)
     scatter = max(1.0, squares / max(len(shifts) - 1, 1))
     normal = design.T @ (weight[:, None] * design) / scatter + prior
     error = np.sqrt(np.diag(np.linalg.inv(normal)))
     if error[1] > limits.MAX_ERROR_OF_CLOCK_RATE.value * limits.CLOCK_RATE_ERROR.value:
         # a poorly determined rate would only move the shift away from the known time
-        told = np.array([told @ (weight @ design) / weight.sum(), 0.0])
+        solution = np.array([solution @ (weight @ design) / weight.sum(), 0.0])
     # both loggers see all starts alike, so this error does not average out
     error[0] = np.hypot(error[0], common)
-    return ToldByStarts(float(told[0]), float(error[0]), float(told[1]), float(error[1]))
+    return StartShift(float(solution[0]), float(error[0]), float(solution[1]), float(error[1]))

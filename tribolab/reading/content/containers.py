@@ -52,9 +52,9 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
         columns = _in_si(path, table, signals, clocks)
         if clocks is not None and clocks.others:
             notes["interpolated"] = _interpolated(signals, clocks)
-        said = [clocks.setting, *table.settings] if clocks else table.settings
+        settings = [clocks.setting, *table.settings] if clocks else table.settings
         parts = [text_of(file.settings)] if several else []
-        before = "\n".join(filter(None, [*parts, text_of(said)]))
+        before = "\n".join(filter(None, [*parts, text_of(settings)]))
         step = number if several else None
         pieces.append(Piece(columns, step, started(before, path, dialect), before))
         labels |= {s.quantity: f"{s.label} [{s.unit}]" for s in signals}

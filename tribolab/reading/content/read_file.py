@@ -202,17 +202,17 @@ def _renamed(columns: Mapping[str, _T], chosen: Mapping[str, str]) -> dict[str, 
 
 def _remove_sentinels(content: Content) -> Content:
     """Replace sentinels by NaN, and note them."""
-    told = []
+    marks_text = []
     for name in dict.fromkeys(name for piece in content.pieces for name in piece.columns):
         if name in ("time", *_PLACES):
             continue
         parts = [piece.columns[name] for piece in content.pieces if name in piece.columns]
         if all(part.dtype.kind == "f" and part.flags.writeable for part in parts):
             marks = take_marks(parts, *content.scales.get(name, (1.0, 0.0)))
-            told += [f"{name}: {mark.words}" for mark in marks]
-    if not told:
+            marks_text += [f"{name}: {mark.words}" for mark in marks]
+    if not marks_text:
         return content
-    return content._replace(notes={**content.notes, "taken_for_missing": "; ".join(told)})
+    return content._replace(notes={**content.notes, "taken_for_missing": "; ".join(marks_text)})
 
 
 def _remove_impossible(content: Content) -> Content:
@@ -236,8 +236,8 @@ def _remove_impossible(content: Content) -> Content:
     content = content._replace(pieces=pieces)
     if not places:
         return content
-    told = "; ".join(f"{name}: {count}" for name, count in places.items())
-    return content._replace(notes={**content.notes, "numbers_beyond_range": told})
+    counts = "; ".join(f"{name}: {count}" for name, count in places.items())
+    return content._replace(notes={**content.notes, "numbers_beyond_range": counts})
 
 
 def _limit_times(values: np.ndarray) -> np.ndarray:

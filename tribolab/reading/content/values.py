@@ -60,8 +60,8 @@ def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
     used = set(dialect.speed.values_named.values())
     for formula in attrs.get("derived", {}).values():
         used |= names_in(parse_formula(formula))
-    if told := [f"{value.name} {value.default}" for value in assumed if value.name in used]:
-        attrs["assumed"] = "; ".join(told)
+    if texts := [f"{value.name} {value.default}" for value in assumed if value.name in used]:
+        attrs["assumed"] = "; ".join(texts)
 
 
 def _check_later_tables(text: str, value: Value, content: Content, dialect: Dialect) -> None:

@@ -11,10 +11,10 @@ from tribolab.reading.lexicon.lexicon import (
     CLAUSE_END,
     alternatives,
     key_pattern,
+    mentions,
     normalise_label,
     plain_text,
     plain_words,
-    says,
     text_pattern,
 )
 from tribolab.reading.numbers import NUMBER, Number, decimal, numbers_in
@@ -124,7 +124,9 @@ def weight_on_lever(line: str) -> float:
     """
     line = line[:LONGEST_LINE]
     numbers = numbers_in(line)
-    if sum(number.unit.lower() in WEIGHTS for number in numbers) != 1 or not says("lever", line):
+    if sum(number.unit.lower() in WEIGHTS for number in numbers) != 1 or not mentions(
+        "lever", line
+    ):
         return 0.0
     if ratios := ratios_in(line):
         sides = ratios[0].one, ratios[0].other

@@ -140,11 +140,11 @@ def text_pattern(name: str) -> re.Pattern[str]:
 
 
 @functools.lru_cache(maxsize=4096)
-def says(name: str, text: str) -> bool:
+def mentions(name: str, text: str) -> bool:
     """Whether a text holds one of the words or forms that sentences.toml has under a name.
 
-    >>> says("zero_word", "zero force"), says("zero_word", "zeroed force")
-    (True, False)
+    >>> [mentions("zero_word", text) for text in ("zero force", "zeroed force")]
+    [True, False]
     """
     return text_pattern(name).search(plain_text(text)) is not None
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 CHUNK = 65_536  # samples; a default chunk would be the whole array
 _MIN_COMPRESSED = 1024  # values; shorter arrays are not compressed
 _COMPRESSION = 1  # higher levels do not reduce noise
-_WORTH = 0.95  # compressed share of the bytes above which compression is not worthwhile
+_MAX_SHARE = 0.95  # compressed share of the bytes above which compression is not worthwhile
 _BLOCKS, _BLOCK = 4, 1024  # number and length of the samples for choosing a filter
 _PIECE = 16 * CHUNK  # samples passed to the library at once, as it copies them
 _CACHE = 1 << 20  # bytes that the library caches per variable; enough for whole chunks
@@ -135,7 +135,7 @@ def storage(values: np.ndarray) -> Arguments:
     plain, shuffled = (
         len(zlib.compress(block.tobytes(), _COMPRESSION)) for block in (sample, sample.T)
     )
-    if min(plain, shuffled) > _WORTH * sample.size:
+    if min(plain, shuffled) > _MAX_SHARE * sample.size:
         return layout
     return layout | {
         "zlib": True,

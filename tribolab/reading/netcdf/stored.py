@@ -44,18 +44,18 @@ def read_plain(group: netCDF4.Dataset, only: Collection[str] | None = None) -> x
     noted = {name: group.variables[name].__dict__ for name in names}
     dims = {dim for name in names for dim in group.variables[name].dimensions}
     named = " ".join(str(its.pop(COORDINATES, "")) for its in (attrs, *noted.values())).split()
-    beside = dims.union(named).intersection(group.variables)
-    for name in beside.difference(names):
+    coordinates = dims.union(named).intersection(group.variables)
+    for name in coordinates.difference(names):
         if dims.issuperset(group.variables[name].dimensions):
             noted[name] = group.variables[name].__dict__
             noted[name].pop(COORDINATES, None)
     if not all(_is_plain(group.variables[name], its) for name, its in noted.items()):
         return None
     # coordinates last, as in xarray
-    names = sorted((n for n in group.variables if n in noted), key=lambda name: name in beside)
+    names = sorted((n for n in group.variables if n in noted), key=lambda name: name in coordinates)
     read = {name: _read(group.variables[name], noted[name]) for name in names}
     data = xr.Dataset(read, attrs=decoded(attrs))
-    return data.set_coords([name for name in names if name in beside])
+    return data.set_coords([name for name in names if name in coordinates])
 
 
 def _is_plain(stored: netCDF4.Variable[Any], attrs: Json) -> bool:

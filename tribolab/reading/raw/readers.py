@@ -77,8 +77,8 @@ def source_of(name: str) -> Path:
 
 def answers(head: bytes) -> dict[str, Answer]:
     """Return the answers of installed readers to the first bytes of a file, except "no"."""
-    said = {name: _answer(_loaded(name), head) for name in installed_readers()}
-    return {name: answer for name, answer in said.items() if answer != "no"}
+    answers = {name: _answer(_loaded(name), head) for name in installed_readers()}
+    return {name: answer for name, answer in answers.items() if answer != "no"}
 
 
 def read_with(name: str, path: Path) -> RawFile:
@@ -145,8 +145,8 @@ def _of_dataset(path: Path, data: xr.Dataset) -> RawFile:
         RawColumn(name, None if unit is None else str(unit), part.values.ravel())
         for name, unit, part in zip(names, units, values, strict=True)
     )
-    said = [s for key, value in data.attrs.items() for s in settings_of(str(key), value)]
-    return RawFile(path, "python", (RawTable("", columns),), tuple(said))
+    settings = [s for key, value in data.attrs.items() for s in settings_of(str(key), value)]
+    return RawFile(path, "python", (RawTable("", columns),), tuple(settings))
 
 
 def _stamp(name: str) -> int:
@@ -181,13 +181,13 @@ def _run(path: Path) -> ModuleType:
 
 def _answer(reader: Reader, head: bytes) -> Answer:
     try:
-        said = reader.can_read(head)
+        answer = reader.can_read(head)
     except Exception as error:  # foreign code may raise anything
         raise ConfigError(f"{reader.name}: can_read fails: {_error_text(error)}") from error
-    if said not in ("yes", "maybe", "no"):
-        what = f"{reader.name}: can_read returns {shown(repr(said), 40)}"
+    if answer not in ("yes", "maybe", "no"):
+        what = f"{reader.name}: can_read returns {shown(repr(answer), 40)}"
         raise ConfigError(f"{what}; return 'yes', 'maybe' or 'no'")
-    return said
+    return answer
 
 
 def _error_text(error: Exception) -> str:

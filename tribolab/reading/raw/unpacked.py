@@ -157,9 +157,9 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
         every = _members(path) or []
         names = [name for name in every if not _DOCUMENT.search(name)] or every
         if len(names) != 1:
-            told = ", ".join(shown(name, 40) for name in names[:5])
+            listed = ", ".join(shown(name, 40) for name in names[:5])
             raise ReadError(
-                f"this archive holds {len(names)} files ({told}); unpack it, and name the raw "
+                f"this archive holds {len(names)} files ({listed}); unpack it, and name the raw "
                 "files",
                 where=path,
             )

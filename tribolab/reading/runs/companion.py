@@ -60,19 +60,19 @@ def describe_companion(
         log = read_log(path, instrument) if log is None else log
         attrs = with_companion(log, other, dialect).attrs
     except ReadError as error:
-        return {"refused": error.told("terminal")}
-    told: CompanionFacts = {
+        return {"refused": error.message_for("terminal")}
+    facts: CompanionFacts = {
         "instrument": attrs["companion_instrument"],
         "shift_s": float(attrs["clock_shift_s"]),
         "uncertainty_s": float(attrs["clock_shift_uncertainty_s"]),
         "source": attrs["clock_shift_source"],
         "ways": dict(attrs.get("clock_shift_ways", {})),
     }
-    if not np.isfinite(told["uncertainty_s"]):
-        told["refused"] = attrs.get(
+    if not np.isfinite(facts["uncertainty_s"]):
+        facts["refused"] = attrs.get(
             "clock_shift_refused", "the friction force does not follow the motion"
         )
-    return told
+    return facts
 
 
 def has_companion(path: Path, instrument: str | Path | None = None) -> bool:

@@ -62,7 +62,7 @@ def add_derived(
     """
     # units are needed for formulas only; their library loads slowly
     known = _operands(columns, symbols, attrs, dialect) if dialect.derived else {}
-    missing, said = [], {}
+    missing, formulas = [], {}
     for rule in dialect.derived:
         if rule.quantity in columns:
             continue
@@ -76,7 +76,7 @@ def add_derived(
         values = _evaluated(rule, known, unit, where)
         columns[rule.quantity] = measurable(np.broadcast_to(values, rows).astype(float))
         known[rule.quantity] = in_base_units(columns[rule.quantity], unit)
-        said[rule.quantity] = rule.formula
+        formulas[rule.quantity] = rule.formula
     if missing:
         raise ReadError(
             f"what a formula needs is not there: {'; '.join(missing)} (instrument "
@@ -84,14 +84,14 @@ def add_derived(
             where=where,
             cure=Cure(*["mend [[column]], [[value]] or [[derived]] in the dialect"] * 3),
         )
-    if zeros := _stated_zeros(said, dialect):
+    if zeros := _stated_zeros(formulas, dialect):
         attrs["zeros_stated"] = zeros
-    _add_ratio_of_stresses(columns, said, attrs)
+    _add_ratio_of_stresses(columns, formulas, attrs)
     _add_stated_rotation(columns, attrs, dialect)
     for name in symbols:
         columns.pop(name, None)
-    if said:
-        attrs["derived"] = said
+    if formulas:
+        attrs["derived"] = formulas
 
 
 def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: Dialect) -> None:
@@ -111,7 +111,7 @@ def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: D
 
 
 def _add_ratio_of_stresses(
-    columns: dict[str, np.ndarray], said: dict[str, str], attrs: Json
+    columns: dict[str, np.ndarray], formulas: dict[str, str], attrs: Json
 ) -> None:
     """Add the coefficient of friction of a run that has stresses instead of forces.
 
@@ -132,7 +132,7 @@ def _add_ratio_of_stresses(
     ratio = np.full(normal.size, np.nan)
     np.divide(columns["shear_stress"], normal, out=ratio, where=pressed)
     columns["friction_coefficient"] = ratio
-    said["friction_coefficient"] = "shear_stress / normal_stress"
+    formulas["friction_coefficient"] = "shear_stress / normal_stress"
 
 
 def _without_contact(normal: np.ndarray) -> np.ndarray:
@@ -159,12 +159,12 @@ def _evaluated(
         raise ReadError(f"{rule.quantity}: {error}", where=where) from error
 
 
-def _stated_zeros(said: Mapping[str, str], dialect: Dialect) -> Json:
+def _stated_zeros(formulas: Mapping[str, str], dialect: Dialect) -> Json:
     """Return which stated zeros of the friction are subtracted by formulas."""
     zeros = {value.name for value in dialect.value if value.name.endswith("_zero")}
     return {
         name: ", ".join(sorted(zeros & names_in(parse_formula(formula))))
-        for name, formula in said.items()
+        for name, formula in formulas.items()
         if name == "friction_force" and zeros & names_in(parse_formula(formula))
     }
 

@@ -31,8 +31,8 @@ def doubt_about_coefficient(recorded: np.ndarray) -> str:
     if sound.size < _MIN_LOADED_ROWS:
         return ""
     size = float(np.percentile(sound, 75))
-    told = f"the friction coefficient is {size:.3g}"
-    return f"{told}: is it written in percent?" if size > LARGEST else ""
+    text = f"the friction coefficient is {size:.3g}"
+    return f"{text}: is it written in percent?" if size > LARGEST else ""
 
 
 def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
@@ -61,5 +61,5 @@ def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
     ratio = float(np.percentile(friction[loaded], 75) / median(normal[loaded]))
     if ratio == 0 or SMALLEST <= ratio <= LARGEST:
         return ""
-    told = f"the friction force is {ratio:.3g} times the normal force"
-    return f"{told}: are the two swapped, or a unit wrong?"
+    text = f"the friction force is {ratio:.3g} times the normal force"
+    return f"{text}: are the two swapped, or a unit wrong?"

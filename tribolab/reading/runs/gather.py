@@ -114,8 +114,8 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
 
 def _by_quantity(attrs: Json, name: str) -> Mapping[str, Any]:
     """Return an attribute that is a mapping by quantity; empty without one."""
-    told = attrs.get(name, {})
-    return told if isinstance(told, Mapping) else {}
+    stated = attrs.get(name, {})
+    return stated if isinstance(stated, Mapping) else {}
 
 
 def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[str, str]:

@@ -118,7 +118,7 @@ def _weights(order: int, half: int) -> np.ndarray:
     return np.asarray(2 * even / np.sum(even**2))
 
 
-def take_inertia(run: xr.Dataset, mass: float, where: str, **said: str | float) -> xr.Dataset:
+def take_inertia(run: xr.Dataset, mass: float, where: str, **stated: str | float) -> xr.Dataset:
     """Subtract the inertial force of a mass from the friction force.
 
     Parameters
@@ -168,12 +168,12 @@ def take_inertia(run: xr.Dataset, mass: float, where: str, **said: str | float) 
     result = run.assign(
         friction_force=("time", force - inertia, attrs), inertial_force=("time", inertia)
     )
-    told = {
+    found = {
         "moving_mass_kg": mass,
         "inertial_force_largest_N": float(np.quantile(np.abs(inertia), 0.999)),
         "inertial_force_noise_N": mass * known.error,
     }
-    return stamp(result, **(run.attrs | told | said))
+    return stamp(result, **(run.attrs | found | stated))
 
 
 def _force_sign(signals: Mapping[str, np.ndarray], force: np.ndarray) -> float:

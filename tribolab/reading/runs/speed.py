@@ -119,9 +119,9 @@ def keep_settings(
 def _of_each_step(values: np.ndarray, name: str, unit: str, where: str) -> np.ndarray:
     if not np.all(values > 0):
         known = values[values > 0]
-        said = f"{known.min():.4g} to {known.max():.4g}" if known.size else "nothing above zero"
+        text = f"{known.min():.4g} to {known.max():.4g}" if known.size else "nothing above zero"
         raise ReadError(
-            f"'{name}' stands before some steps ({said}) and is missing or zero before others; "
+            f"'{name}' stands before some steps ({text}) and is missing or zero before others; "
             "state it before each",
             where=where,
         )
@@ -192,7 +192,7 @@ def _by_strokes_of_steps(
     if not _changes_with_steps(columns.get("step"), bounds):
         columns["step"] = np.repeat(np.arange(1, len(bounds)), np.diff(bounds)).astype(np.int32)
     velocity, mean_speed = np.zeros(len(time)), np.zeros(len(time))
-    told: list[Json] = []
+    steps: list[Json] = []
     without: list[tuple[int, int, float]] = []  # without reversal of friction, and its frequency
     for first, stop in zip(bounds[:-1], bounds[1:], strict=True):
         if any(values[first] == 0 for values in of_steps.values()):
@@ -203,21 +203,21 @@ def _by_strokes_of_steps(
             name, unit = dialect.speed.values_named[key], "m" if key == "stroke_value" else "Hz"
             own[f"{name}_{unit}"] = float(values[first])
         _by_strokes(part, own, time[first:stop], where, dialect)
-        told.append(own)
+        steps.append(own)
         mean_speed[first:stop] = 2 * own["stroke_m"] * own["stroke_frequency_Hz"]
         if "sliding_velocity" not in part:
             without.append((first, stop - 1, own["stroke_frequency_Hz"]))
             velocity[first:stop] = np.nan
         else:
             velocity[first:stop] = part["sliding_velocity"]
-    if not told:
+    if not steps:
         raise ReadError("its strokes have a frequency or a length of zero all along", where=where)
-    attrs["stroke_m"] = max(own["stroke_m"] for own in told)
-    if unlike := sum(own.get("strokes_unlike_s", 0.0) for own in told):
+    attrs["stroke_m"] = max(own["stroke_m"] for own in steps)
+    if unlike := sum(own.get("strokes_unlike_s", 0.0) for own in steps):
         attrs["strokes_unlike_s"] = unlike
     for key in ("stroke_m", "stroke_frequency_Hz"):
-        attrs[f"{key}_of_steps"] = "; ".join(f"{own[key]:.6g}" for own in told)
-    if len(without) == len(told):
+        attrs[f"{key}_of_steps"] = "; ".join(f"{own[key]:.6g}" for own in steps)
+    if len(without) == len(steps):
         columns["set_speed"] = mean_speed
         return
     for first, last, frequency in without:

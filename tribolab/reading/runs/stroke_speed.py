@@ -87,11 +87,11 @@ def velocity_of_strokes(
     usual = np.percentile(swing, 75)
     slides = (swing > _AT_REST * usual) & (counts > 0)
     # a cycle with a start or stop covers only part of the stroke
-    beside = ~(np.append(False, slides[:-1]) & np.append(slides[1:], False))
-    slides &= ~beside | (swing > _WHOLE * usual)
+    single = ~(np.append(False, slides[:-1]) & np.append(slides[1:], False))
+    slides &= ~single | (swing > _WHOLE * usual)
     power = np.bincount(cycle[known], rest**2, minlength=cycles)[slides].sum()
-    told = 2 * np.sum(counts[slides] * swing[slides] ** 2)
-    if np.count_nonzero(slides) < FEWEST_CYCLES or not told > _TELLS * power:
+    reversing = 2 * np.sum(counts[slides] * swing[slides] ** 2)
+    if np.count_nonzero(slides) < FEWEST_CYCLES or not reversing > _TELLS * power:
         return None
     middle = time[0] + (np.flatnonzero(slides) + 0.5) / frequency
     next_one = slides[1:] & slides[:-1]

@@ -63,7 +63,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
     if not seldom:
         return Together(time, columns)
     lead = next((name for name in (*FRICTION_SIGNALS, "shear_stress") if name in columns), None)
-    told = [
+    texts = [
         f"{name}: a value in every {_ordinal(rows)} row"
         for name, rows in seldom.items()
         if name != lead
@@ -74,7 +74,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
         else values
         for name, values in columns.items()
     }
-    attrs: Json = {"interpolated": "; ".join(told)} if told else {}
+    attrs: Json = {"interpolated": "; ".join(texts)} if texts else {}
     keep = np.ones(time.size, dtype=bool)
     if lead in seldom:
         keep[:] = False

@@ -55,11 +55,11 @@ def measured_part(scan: xr.Dataset) -> xr.Dataset:
         return scan
     part = scan.isel(cut)
     part = part.assign_coords({dim: part[dim] - part[dim][0] for dim in ("y", "x")})
-    told = " and ".join(
+    shares = " and ".join(
         f"{Count(number):{name}|{name}s}" for name, number in lost.items() if number
     )
     were = "was" if sum(lost.values()) == 1 else "were"
-    text = f"{told} at the border without a height {were} cut off"
+    text = f"{shares} at the border without a height {were} cut off"
     history = "\n".join(filter(None, [scan.attrs.get("history", ""), history_line(text)]))
     return part.assign_attrs(cropped=text, history=history)
 

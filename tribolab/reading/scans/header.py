@@ -175,7 +175,7 @@ def _split_entries(text: str, *, commas_part: bool) -> list[str]:
             entries.append([cell])
         else:
             entries[-1].append(cell)
-    return [f"{about[0]} {key}: {' '.join(said)}" for key, *said in entries if said]
+    return [f"{about[0]} {key}: {' '.join(rest)}" for key, *rest in entries if rest]
 
 
 def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:

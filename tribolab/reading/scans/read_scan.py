@@ -148,13 +148,13 @@ def _remove_isolated(scan: xr.Dataset) -> xr.Dataset:
     if not marks:
         return scan
     before = [scan.attrs["taken_for_missing"]] if "taken_for_missing" in scan.attrs else []
-    told = [
+    removed = [
         f"height: {1e6 * mark.number:.9g} um {Count(mark.rows):time|times}, far from all other "
         "heights"
         for mark in marks
     ]
     scan = scan.assign(height=scan.height.copy(data=height))
-    return scan.assign_attrs(taken_for_missing="; ".join([*before, *told]))
+    return scan.assign_attrs(taken_for_missing="; ".join([*before, *removed]))
 
 
 def _recognised(path: Path) -> Dialect | None:
@@ -193,12 +193,12 @@ def _read_by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], st
     """Return the scans of a file, one for each column of heights."""
     if isinstance(dialect, PythonReader):
         dialect = with_columns(dialect, path)
-    beside = [c for c in dialect.column if c.key == "height" and not c.optional]
-    if len(beside) < 2:
+    several = [c for c in dialect.column if c.key == "height" and not c.optional]
+    if len(several) < 2:
         return _of_columns(path, dialect)
-    others = tuple(column for column in dialect.column if column not in beside)
+    others = tuple(column for column in dialect.column if column not in several)
     scans: list[xr.Dataset] = []
-    for column in beside:
+    for column in several:
         mine, checksum = _of_columns(path, dialect.model_copy(update={"column": (*others, column)}))
         scans += mine
     for scan in scans:
@@ -276,21 +276,21 @@ def _stated_pitch(
     """
     if dialect.pitch is not None:
         return positive(dialect.pitch, "m", "pitch")
-    held_by = dialect.pitch_value or dialect.length_value
-    if held_by is None:
+    source = dialect.pitch_value or dialect.length_value
+    if source is None:
         raise ReadError(
             f"{path}: heights without positions: put the distance of neighbouring heights into the "
             f"dialect '{dialect.name}', pitch = \"0.25 um\" in its first lines"
         )
-    [value] = [value for value in dialect.value if value.name == held_by]
-    said = attrs.get(value.attribute)
-    if said is None or not float(said) > 0:
+    [value] = [value for value in dialect.value if value.name == source]
+    stated = attrs.get(value.attribute)
+    if stated is None or not float(stated) > 0:
         what = "distance of its points" if dialect.pitch_value else "length of the profile"
         raise ReadError(
             f"{path}: the {what} is not in the file as the dialect "
             f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
         )
-    return float(said) if dialect.pitch_value else _rounder_pitch(float(said), points)
+    return float(stated) if dialect.pitch_value else _rounder_pitch(float(stated), points)
 
 
 def _rounder_pitch(length: float, points: int) -> float:

@@ -8,7 +8,7 @@ from pathlib import Path
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.content.model import Piece
 
-_TOLD = 5  # most titles named in a message
+_MAX_TITLES = 5  # most titles named in a message
 _NUMBERS = re.compile(r"\d+(?:[.,]\d+)*")
 _LETTERS = re.compile(r"[^\W\d_]+")
 # titles of tables that were computed from another
@@ -66,5 +66,5 @@ def _are_traces(pieces: list[Piece]) -> bool:
 
 def _titles(pieces: list[Piece]) -> str:
     titles = [f"'{shown(_title(piece) or 'without a title', 40)}'" for piece in pieces]
-    more = f" and {len(titles) - _TOLD} more" if len(titles) > _TOLD else ""
-    return ", ".join(titles[:_TOLD]) + more
+    more = f" and {len(titles) - _MAX_TITLES} more" if len(titles) > _MAX_TITLES else ""
+    return ", ".join(titles[:_MAX_TITLES]) + more

@@ -54,13 +54,13 @@ def stated_units(text: str) -> Iterator[StatedUnit]:
             continue
         before = text[begin : word.start()]
         bracketed = IN_BRACKETS.search(before) is not None
-        said = words_of(before)
-        is_in = bool(said) and part_pattern("in").fullmatch(said[-1]) is not None
-        of_unit = any(part_pattern("unit").fullmatch(word) for word in said)
+        before_unit = words_of(before)
+        is_in = bool(before_unit) and part_pattern("in").fullmatch(before_unit[-1]) is not None
+        of_unit = any(part_pattern("unit").fullmatch(word) for word in before_unit)
         ends = re.match(r"\s*(?:$|[\W_]*$|[\])]|[,;\t(])", text[word.end() :]) is not None
         apart = _SEPARATED.search(before) is not None or is_in or of_unit
         if (
-            said
+            before_unit
             and not before.rstrip(" [(")[-1:].isdigit()
             and (bracketed or (apart and ends and word[0].lower() != "in"))
         ):

@@ -204,22 +204,22 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             where=path,
             cure=cures.PERHAPS_PROFILE,
         )
-    if _is_json(head) and not _holds_columns(path):
+    if _is_json(head) and not _has_columns(path):
         cure = "write its columns as a table, e.g. in Python pandas.DataFrame(...).to_csv(...)"
         raise ReadError("this is JSON, of which no table is read", where=path, cure=cure)
     return "text"
 
 
-def _holds_columns(path: Path) -> bool:
+def _has_columns(path: Path) -> bool:
     try:
         state = path.stat()
     except OSError:
         return False
-    return state.st_size <= _MAX_JSON and _holds_tables(path, state.st_size, state.st_mtime_ns)
+    return state.st_size <= _MAX_JSON and _has_tables(path, state.st_size, state.st_mtime_ns)
 
 
 @functools.lru_cache(maxsize=16)  # a file is inspected more than once
-def _holds_tables(path: Path, size: int, changed: int) -> bool:
+def _has_tables(path: Path, size: int, changed: int) -> bool:
     # imported late for a quick start
     from tribolab.reading.raw.containers.json_tables import has_tables
 
@@ -288,7 +288,7 @@ def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
     if head.count(b"\n") > _MAX_LINES or b"\0" in head[:4096]:
         return []
     lines = _text_of(head).replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    told = [(n, match) for n, line in enumerate(lines, 1) if (match := _NAMED.match(line))]
-    if 2 * len(told) < sum(bool(line.strip()) for line in lines):
+    entries = [(n, match) for n, line in enumerate(lines, 1) if (match := _NAMED.match(line))]
+    if 2 * len(entries) < sum(bool(line.strip()) for line in lines):
         return []
-    return [(n, (match["name"], match["value"], match["unit"] or "")) for n, match in told]
+    return [(n, (match["name"], match["value"], match["unit"] or "")) for n, match in entries]

@@ -73,8 +73,8 @@ def _without_units(cells: list[str], units: list[str]) -> list[str]:
     """Return cells without the unit of their column."""
     if len(cells) != len(units):
         return cells
-    told = ((cell, _CELL.fullmatch(cell), unit) for cell, unit in zip(cells, units, strict=True))
-    return [found[1] if found and found[2] == unit else cell for cell, found, unit in told]
+    matches = ((cell, _CELL.fullmatch(cell), unit) for cell, unit in zip(cells, units, strict=True))
+    return [found[1] if found and found[2] == unit else cell for cell, found, unit in matches]
 
 
 def has_commas_in_quotes(text: str) -> bool:

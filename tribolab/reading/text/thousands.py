@@ -95,7 +95,7 @@ def without_thousands(text: str, mark: Mark, delimiter: str) -> str:
     >>> without_thousands('1,234,"1,234.5"', ",", ",")
     '1,234,"1234.5"'
     """
-    return _numbers(mark, delimiter).sub(lambda told: told[0].replace(mark, ""), text)
+    return _numbers(mark, delimiter).sub(lambda match: match[0].replace(mark, ""), text)
 
 
 @functools.lru_cache(maxsize=16)

@@ -120,7 +120,7 @@ def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
             unit=marginal.unit,
             prior_low=marginal.prior_low,
             prior_high=marginal.prior_high,
-            told=_known(marginal.told),
+            told=_known(marginal.reduction),
             identified=marginal.identified,
             words=f"{marginal.words} {in_words(marginal)}",
         )

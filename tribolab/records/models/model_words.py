@@ -98,8 +98,8 @@ def judgement(fit: xr.Dataset) -> str:
     share = np.abs(off) / np.maximum(np.abs(mu), 1e-12)
     worst = int(np.argmax(np.abs(off)))
     error = fit["friction_coefficient_residual_u"].values[used]
-    told = (mu > 0) & (mu - off > 0) & ~(np.abs(off) <= _MAX_SIGMAS * error)
-    factor = float(np.exp(np.abs(np.log(mu[told] / (mu - off)[told])).max(initial=0.0)))
+    clear = (mu > 0) & (mu - off > 0) & ~(np.abs(off) <= _MAX_SIGMAS * error)
+    factor = float(np.exp(np.abs(np.log(mu[clear] / (mu - off)[clear])).max(initial=0.0)))
     parts = [_verdict(fit.attrs, np.abs(off).max() / np.abs(mu).max(), factor)]
     low, high = fit.attrs["valid_speed_low_m_s"], fit.attrs["valid_speed_high_m_s"]
     if np.isfinite(low) and (low > 1.01 * speed[0] or high < 0.99 * speed[-1]):

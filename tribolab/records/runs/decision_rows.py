@@ -86,11 +86,11 @@ def _effect(
 
 def _accepted_checks(decision: Mapping[str, Any], checks: Sequence[Mapping[str, Any]]) -> str:
     """Return the checks against whose objection something was accepted, as text."""
-    said = [(row["check"], str(row.get("decision", ""))) for row in checks]
+    decided = [(row["check"], str(row.get("decision", ""))) for row in checks]
     by = f", {decision['author']}, "  # authors of this decision
     names = [
         check
-        for check, text in said
+        for check, text in decided
         if text.startswith("accepted by ")
         and by in f", {text.removeprefix('accepted by ').removesuffix(' in spite of')}, "
     ]

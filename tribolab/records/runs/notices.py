@@ -29,7 +29,7 @@ from tribolab.records.runs.run_facts import (
     counting,
     drift_of,
     findings_of,
-    inertia_said,
+    inertia_text,
     left_out,
     main_quantity,
     position_range,
@@ -73,8 +73,8 @@ def notices_of(
 
     friction = counting(friction)
     count = friction.sizes["segment"]
-    told = any(row["check"] == "segments" for row in findings_of(run))
-    if not told and (why := why_no_segment(segments)):
+    listed = any(row["check"] == "segments" for row in findings_of(run))
+    if not listed and (why := why_no_segment(segments)):
         say("suspect", "segments", f"{why}.")
     quantity = main_quantity(friction)
     values = values_of(friction, quantity, count)
@@ -117,7 +117,7 @@ def notices_of(
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
         say("note", LEFT_OUT, f"{entry.reason}: {text}")
-    if inertia := inertia_said(run.attrs):
+    if inertia := inertia_text(run.attrs):
         say("note", "inertia", inertia)
     if slip is not None and (distance := distance_to_critical(slip)):
         say("note", STICK_SLIP, distance)
@@ -137,8 +137,8 @@ def _remarks(friction: xr.Dataset) -> list[str]:
     alike: dict[str, list[tuple[int, str]]] = {}
     remarks = friction["remark"].values.astype(str)
     numbers = friction["segment"].values if "segment" in friction.coords else range(remarks.size)
-    for number, said in zip(numbers, remarks, strict=True):
-        for text in filter(None, said.split("; ")):
+    for number, remark in zip(numbers, remarks, strict=True):
+        for text in filter(None, remark.split("; ")):
             alike.setdefault(_NUMBER.sub("", text), []).append((int(number) + 1, text))
     return [
         f"segment {first}: {text}" + (f" (and {many(count, 'more segment')})" if count else "")
@@ -173,25 +173,25 @@ def distance_to_critical(slip: xr.Dataset) -> str:
     kinds = kinds[kinds != NOT_LOOKED_AT]
     if np.isnan(rig) or not kinds.size:
         return ""
-    said = f"stiffness of the rig {rig:.4g} N/m"
+    stated = f"stiffness of the rig {rig:.4g} N/m"
     if (kinds == CLASSES[0]).all():
-        return f"{said}: above the critical stiffness, as friction is steady at all speeds"
+        return f"{stated}: above the critical stiffness, as friction is steady at all speeds"
     steepest = slip["loading_stiffness"].values
     if (steepest > limits.MIN_SLOPE_OVER_STIFFNESS.value * rig).any():
         return (
-            f"{said}, but the force rises by {np.nanmax(steepest):.4g} N/m during sticks, which no "
-            "rig so soft allows. Check stiffness, and the gain of the force"
+            f"{stated}, but the force rises by {np.nanmax(steepest):.4g} N/m during sticks, which "
+            "no rig so soft allows. Check stiffness, and the gain of the force"
         )
     low, high = (slip[f"critical_stiffness_{end}"].values for end in ("low", "high"))
     known = np.isfinite(low)
     if not known.any():
-        return f"{said}; too few cycles of regular stick-slip to compare it with the critical one"
+        return f"{stated}; too few cycles of regular stick-slip to compare it with the critical one"
     ends = float(median(low[known])), float(median(high[known]))
     if np.isfinite(ends[1]):
         shares, upper = f"{rig / ends[1]:.2g} to {rig / ends[0]:.2g}", f"to {ends[1]:.3g} N/m"
     else:
         shares, upper = f"less than {rig / ends[0]:.2g}", "N/m or more"
-    text = f"{said}: {shares} of the critical stiffness ({ends[0]:.3g} {upper})"
+    text = f"{stated}: {shares} of the critical stiffness ({ends[0]:.3g} {upper})"
     mass = float(slip.attrs.get("moving_mass_kg", np.nan))
     if np.isnan(mass):
         return text

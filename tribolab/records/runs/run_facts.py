@@ -108,7 +108,7 @@ def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
         clock_shift_s=shift.get("clock_shift_s"),
         clock_shift_uncertainty_s=shift.get("clock_shift_uncertainty_s"),
         clock_shift_source=str(attrs.get("clock_shift_source", "")),
-        inertia=inertia_said(attrs),
+        inertia=inertia_text(attrs),
         history=str(attrs.get("history", "")),
     )
 
@@ -146,9 +146,9 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         pairs_of(friction),
     )
     middle = friction.attrs.get("stroke_middle")
-    told = value[finite]
+    levels = value[finite]
     if middle is not None:  # one of hundreds of strokes has little weight
-        told = np.array([value[part].mean() for part in segments_by_speed(speed, finite)])
+        levels = np.array([value[part].mean() for part in segments_by_speed(speed, finite)])
     return RunFacts(
         quantity=name,
         offset=str(friction.attrs.get("offset", "")),
@@ -156,8 +156,8 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         velocity_source=_speed_text(friction.attrs),
         sliding_speed_min_m_s=plain_value(np.nanmin(speed, initial=np.inf)),
         sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
-        value_min=plain_value(told.min()) if told.size else None,
-        value_max=plain_value(told.max()) if told.size else None,
+        value_min=plain_value(levels.min()) if levels.size else None,
+        value_max=plain_value(levels.max()) if levels.size else None,
         relative_scatter=float(median(scatter)) if scatter.size else None,
         relative_drift=plain_value(drift_of(friction, value)),
         unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
@@ -175,7 +175,7 @@ def _speed_text(attrs: Mapping[str, Any]) -> str:
     return f"{source}{used}"
 
 
-def inertia_said(attrs: Mapping[str, Any]) -> str:
+def inertia_text(attrs: Mapping[str, Any]) -> str:
     """Return text on the inertia of a moving mass in the friction force; "" if unknown.
 
     Parameters

@@ -105,17 +105,17 @@ class RunningIn:
                 f"{number(last or 0.0)} over {whole}, and does not become steady. Its mean depends "
                 "on the length of the run"
             )
-        said = error_text(steady, self.steady_friction_coefficient_U95)
+        text = error_text(steady, self.steady_friction_coefficient_U95)
         parts = []
         if self._moves(first):
             parts.append(
                 f"friction {_verb(first, steady)} along the run in its first "
-                f"{length_text(self.start_m)} of {whole}, from {number(first or 0.0)} to {said}"
+                f"{length_text(self.start_m)} of {whole}, from {number(first or 0.0)} to {text}"
             )
         if self._changes_at_end:
             begin = "and" if parts else f"friction {_verb(steady, last)} along the run:"
             parts.append(
-                f"{begin} from {length_text(self.stop_m)} of {whole} on from {said} to "
+                f"{begin} from {length_text(self.stop_m)} of {whole} on from {text} to "
                 f"{number(last or 0.0)}"
             )
         mean = number(self.mean_friction_coefficient or 0.0)

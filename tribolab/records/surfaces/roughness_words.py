@@ -72,22 +72,22 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
     >>> roughness_in_words([("map", {"Sq_m": 1e-6, "Rq_m": 9e-7, "form_removed": "polynomial"})])
     ['Sq (polynomial of degree 2 taken off): map 1 µm']
     """
-    told: dict[str, list[str]] = {}
+    by_heading: dict[str, list[str]] = {}
     for name, row in rows:
         if number_of(row, "Sq_m") is not None:  # for a map: over its area, not its rows
             form = form_in_words(row, radius=False)
             heading = f"Sq ({form})" if form else "Sq"
-            said = _roughness_text(row, "Sq", "Sa")
+            text = _roughness_text(row, "Sq", "Sa")
         elif number_of(row, "Rq_m") is not None:
-            said = _roughness_text(row, "Rq", "Ra")
-            heading = f"Rq{' ± U95' if '±' in said else ''} ({_evaluation_text(row)})"
+            text = _roughness_text(row, "Rq", "Ra")
+            heading = f"Rq{' ± U95' if '±' in text else ''} ({_evaluation_text(row)})"
         else:
             continue
-        told.setdefault(heading, []).append(f"{name} {said}")
+        by_heading.setdefault(heading, []).append(f"{name} {text}")
     return [
         f"{what}: {', '.join(names[:_MAX_LISTED])}"
         + (f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else "")
-        for what, names in told.items()
+        for what, names in by_heading.items()
     ]
 
 
@@ -127,5 +127,5 @@ def _roughness_text(row: Row, quadratic: str, mean: str) -> str:
     value, behind = (number_of(row, f"{name}_m") for name in (quadratic, mean))
     error = roughness_u95(row, quadratic)
     scaled = 1e6 * (value or 0.0)
-    said = error_text(scaled, 1e6 * error) if error else f"{scaled:.3g}"
-    return f"{said} µm" + (f" ({mean} {1e6 * behind:.3g} µm)" if behind is not None else "")
+    text = error_text(scaled, 1e6 * error) if error else f"{scaled:.3g}"
+    return f"{text} µm" + (f" ({mean} {1e6 * behind:.3g} µm)" if behind is not None else "")

@@ -182,9 +182,9 @@ def verdict(
             known = _bounds(mine)
             ranges[name] = Extent(min(known), max(known))
             steady = _steady(mine) if name == "friction_coefficient" else []
-            told = span(steady, "") if steady else _ranges(mine, UNITS[name])
+            text = span(steady, "") if steady else _ranges(mine, UNITS[name])
             of = f"steady {SYMBOLS[name]}" if steady else SYMBOLS[name]
-            parts.append(f"{of} {'from ' if ' to ' in told else ''}{told}")
+            parts.append(f"{of} {'from ' if ' to ' in text else ''}{text}")
     return CampaignVerdict(
         status=status,
         text="; ".join(parts),

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _95 = 1.959963984540054
 _STATISTICAL = "statistical only: the spectrum's error is not in it"
-BESIDE_FIT = {  # columns that depend on several models or on the surface, and their meanings
+MODEL_COLUMNS = {  # columns that depend on several models or on the surface, and their meanings
     "area_dry_over_wet": "real contact area, dry divided by in the medium",
     "judgement": "where measurement and model differ, in words",
     "spectrum_error_low": "relative change of the shear stress due to the uncertain spectrum, down",
@@ -124,10 +124,10 @@ def complete(rows: Sequence[ModelRow]) -> None:
         ]
         if not earlier:
             continue
-        reference, beside = earlier[-1]
-        if _is_known(beside) and fit["shear_stress_Pa"] > 0:
+        reference, first_fit = earlier[-1]
+        if _is_known(first_fit) and fit["shear_stress_Pa"] > 0:
             value, error = (
-                [of[f"corrected_shear_stress_{k}Pa"] for of in (fit, beside)]
+                [of[f"corrected_shear_stress_{k}Pa"] for of in (fit, first_fit)]
                 for k in ("", "error_")
             )
             ratio = value[0] / value[1]

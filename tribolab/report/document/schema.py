@@ -24,7 +24,7 @@ from tribolab.records.runs.run_record import RunFacts
 from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.records.wording import UNITS
 from tribolab.regime.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN
-from tribolab.report.document.models import BESIDE_FIT, SENSITIVE
+from tribolab.report.document.models import MODEL_COLUMNS, SENSITIVE
 from tribolab.report.tables import SEVERITIES
 
 REPORT_SCHEMA_FILE = "report.schema.json"
@@ -69,7 +69,7 @@ ScanCheckRow = Annotated[
     Row, Columns(_CHECK, texts={*_CHECK} - {"value"}, values={"status": STATUSES})
 ]
 FitRow = Annotated[
-    Row, Columns(FITTED | BESIDE_FIT, texts=_FIT_TEXTS, counts=("degrees_of_freedom",))
+    Row, Columns(FITTED | MODEL_COLUMNS, texts=_FIT_TEXTS, counts=("degrees_of_freedom",))
 ]
 SensitivityRow = Annotated[Row, Columns(SENSITIVE, texts=("variation", "low", "high", "reason"))]
 LeftOutRow = Annotated[Row, Columns(LEFT_OUT, texts=tuple(LEFT_OUT))]

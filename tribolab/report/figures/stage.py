@@ -59,7 +59,7 @@ class Figures(Recorded[FigureTask, DrawnFigures, Notice]):
         """Reuse the pictures, their numbers, and their PDFs if wanted."""
         files = [name for one in record.figures for name in (one.file, one.data) if name]
         files += [_pdf(one.file) for one in record.figures if task.pdf]
-        return record if all(map(self._store.link_beside, files)) else None
+        return record if all(map(self._store.link_file, files)) else None
 
     @staticmethod
     def work(task: FigureTask) -> DrawnFigures:

@@ -93,9 +93,9 @@ def _advice(parts: dict[str, list[Contribution]], share: dict[str, float], count
     first = max(share, key=lambda part: share[part])
     gains = {part: sum(each.gain for each in mine) / count for part, mine in parts.items()}
     best = max(gains, key=lambda part: gains[part])
-    says = f"Largest part: {first} ({percent(share[first])} of the variance)."
+    text = f"Largest part: {first} ({percent(share[first])} of the variance)."
     if gains[best] < _MIN_GAIN:
-        return says
+        return text
     means = {BETWEEN: "One more repeat of each condition", NOISE: "Records four times as long"}
     what = means.get(best, f"Half the uncertainty of “{best}”")
-    return f"{says} {what} would reduce U95 by about {percent(gains[best])}."
+    return f"{text} {what} would reduce U95 by about {percent(gains[best])}."

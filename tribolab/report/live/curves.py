@@ -225,9 +225,9 @@ def _measured(known: FrictionOverSpeed, curve: CurveRecord, label: str) -> xr.Da
     return _dataset(outcome, rows, label, hover=words, link=targets)
 
 
-def _first_component(says: str) -> str:
+def _first_component(text: str) -> str:
     """Return the first component missing from an uncertainty, short enough for a tooltip."""
-    return says.partition(";")[0].partition(", because")[0]
+    return text.partition(";")[0].partition(", because")[0]
 
 
 def _as_found(curve: CurveRecord) -> list[xr.Dataset]:

@@ -36,7 +36,7 @@ class PointError(NamedTuple):
     """U95 of a point of a curve, the variation it includes, and the scatter of its runs."""
 
     size: float | None
-    holds: str
+    source: str
     within: float | None
     scatter: float | None
 
@@ -152,27 +152,27 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     --------
     >>> row = {"friction_coefficient_U95": 0.06, "friction_coefficient_between": 0.04, "runs": 4}
     >>> point_error(row, [RunPoint("a", 1e-3, 0.8, 0.01, 50.0, 2)])
-    PointError(size=0.06, holds='between runs', within=0.01, scatter=0.04)
-    >>> point_error({"friction_coefficient_U95": 0.01, "runs": 1}, []).holds
+    PointError(size=0.06, source='between runs', within=0.01, scatter=0.04)
+    >>> point_error({"friction_coefficient_U95": 0.01, "runs": 1}, []).source
     'within the run'
     """
     runs = int(row.get("runs") or 1)
     own = [point.within for point in points if point.within is not None]
     within = math.sqrt(sum(e * e for e in own) / len(own)) if own else None
-    holds = "between runs" if runs > 1 else "within the run"
+    source = "between runs" if runs > 1 else "within the run"
     scatter = row.get("friction_coefficient_between") if runs > 1 else None
-    return PointError(row.get("friction_coefficient_U95"), holds, within, scatter)
+    return PointError(row.get("friction_coefficient_U95"), source, within, scatter)
 
 
 def describe_point(
-    row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint], says: str = ""
+    row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint], text: str = ""
 ) -> str:
     """Return the tooltip of a point of a curve, one line for each item.
 
-    `says` names the component missing from its uncertainty.
+    `text` names the component missing from its uncertainty.
     """
     speed, mu = row["sliding_speed_m_s"], row["friction_coefficient"]
-    lines = [f"v = {plain_speed(speed)}", f"µ = {error_text(mu, error.size)} (U95, {error.holds})"]
+    lines = [f"v = {plain_speed(speed)}", f"µ = {error_text(mu, error.size)} (U95, {error.source})"]
     runs = int(row.get("runs") or 1)
     if runs > 1:
         lines.append(f"mean of {runs} runs")
@@ -182,7 +182,7 @@ def describe_point(
             lines.append(f"U95 within one run: {number(error.within, 2)}")
     else:
         lines.append("between runs: not known, one run")
-    lines += [says] * bool(says)
+    lines += [text] * bool(text)
     if points:
         samples = sum(point.effective_samples for point in points)
         count = sum(point.segments for point in points)

@@ -260,8 +260,8 @@ def _media(opened: Sequence[_Opened]) -> list[str]:
 def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
     """Return the legend of the line styles for the main and the secondary quantity."""
     wet, dry = (
-        f"{looked}: {first}; {beside}: {second}"
-        for looked, beside in (("full", "dotted"), ("dashed", "dots and dashes"))
+        f"{looked}: {first}; {other_dash}: {second}"
+        for looked, other_dash in (("full", "dotted"), ("dashed", "dots and dashes"))
     )
     media = _media(opened)
     if not distinguish_media(media, "", ""):
@@ -281,9 +281,9 @@ def _traces(opened: Sequence[_Opened]) -> FigureSpec:
     for contact in opened:
         for number_, (speed, distance, values) in enumerate(contact.traces):
             style = _STYLES[number_ > 0][contact.labels["open"]]
-            told, run = f"{contact.name}, {plain_speed(speed)}", (contact.run,)
+            label, run = f"{contact.name}, {plain_speed(speed)}", (contact.run,)
             line = contact.series(
-                contact.name, scale * distance, values, style, hover=told, link=run
+                contact.name, scale * distance, values, style, hover=label, link=run
             )
             series.append(line)
     return FigureSpec(
@@ -308,9 +308,9 @@ def _spectra(opened: Sequence[_Opened]) -> FigureSpec:
         kept = np.isfinite(spectrum["psd"].values)
         of, noise = (style[contact.labels["open"]] for style in _STYLES)
         power, limit = (spectrum[name].values[kept] for name in ("psd", "psd_significant"))
-        told = f"{contact.name}: limit of noise"
+        label = f"{contact.name}: limit of noise"
         series.append(contact.series(contact.name, f[kept], power, of))
-        series.append(contact.series(contact.name, f[kept], limit, noise, hover=told))
+        series.append(contact.series(contact.name, f[kept], limit, noise, hover=label))
     return FigureSpec(
         "sliding-spectra",
         "sliding",

@@ -14,12 +14,12 @@ from tribolab.records.runs.starts import starts_of
 
 def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
     """Return static and kinetic friction over rest time, of runs that have both."""
-    held = [(run.outcome, rows) for run in runs if (rows := starts_of(run))]
-    if not held:
+    chosen = [(run.outcome, rows) for run in runs if (rows := starts_of(run))]
+    if not chosen:
         return []
-    colours = places([outcome.name for outcome, _ in held])
+    colours = places([outcome.name for outcome, _ in chosen])
     series = []
-    for outcome, rows in held:
+    for outcome, rows in chosen:
         x = [number_of(row, "waiting_time_s") for row in rows]
         for name, words in (
             ("static_friction_coefficient", "static"),
@@ -47,7 +47,7 @@ def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
             section="view-static",
             title="Static and kinetic friction over the time of rest",
             note="Filled: static friction of each start ± U95; open: kinetic friction after it.",
-            alt=f"Static and kinetic friction coefficients of {many(len(held), 'run')} over the "
+            alt=f"Static and kinetic friction coefficients of {many(len(chosen), 'run')} over the "
             "time of rest.",
             panels=(Panel(Axis("time of rest", "s", log=True), Axis("friction coefficient µ")),),
             series=tuple(series),

@@ -96,9 +96,9 @@ def _of_findings(document: Mapping[str, Any]) -> Iterable[Doubt]:
     for (severity, where), rows in grouped.items():
         names = list(dict.fromkeys(name for members, _ in rows for name in members))
         message = rows[0][1]
-        said = _check_message(message, runs.get(names[0])) if names else ""
-        cure = message[len(said) :].lstrip(". ") if said else ""
-        text = said or (message if where == "run" else f"{check_words(where)}: {message}")
+        heading = _check_message(message, runs.get(names[0])) if names else ""
+        cure = message[len(heading) :].lstrip(". ") if heading else ""
+        text = heading or (message if where == "run" else f"{check_words(where)}: {message}")
         link = f"run {names[0]}" if len(names) == 1 else "#findings"
         yield Doubt(severity, _names(names, len(runs)), text.rstrip("."), cure, link)
 

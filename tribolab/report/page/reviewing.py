@@ -93,9 +93,9 @@ def decision_texts(text: str) -> tuple[str, list[str]]:
     head = text[: cuts[0]] if cuts else text
     texts = [text[low:high] for low, high in pairwise([*cuts, len(text)])] if cuts else []
     try:
-        told = [tomllib.loads(toml)["decision"] for toml in texts]
+        decided = [tomllib.loads(toml)["decision"] for toml in texts]
         whole = tomllib.loads(text).get("decision", [])
-        if [entry for entries in told for entry in entries] == whole and not tomllib.loads(head):
+        if [entry for entries in decided for entry in entries] == whole and not tomllib.loads(head):
             return head, texts
     except tomllib.TOMLDecodeError:  # header inside a text
         pass

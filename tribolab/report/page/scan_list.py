@@ -24,12 +24,12 @@ def listed_scans(document: Mapping[str, Any]) -> list[ListedScan]:
     for surface in document["surfaces"]:
         for file in surface["files"]:
             name = PurePath(file).name
-            said = [
+            mine = [
                 row
                 for row in surface["checks"]
                 if row["status"] in _ORDER and PurePath(row["scan"]).name == name
             ]
-            said.sort(key=lambda row: _ORDER.index(row["status"]))
-            state, why = (said[0]["status"], said[0]["message"]) if said else ("ok", "")
+            mine.sort(key=lambda row: _ORDER.index(row["status"]))
+            state, why = (mine[0]["status"], mine[0]["message"]) if mine else ("ok", "")
             rows.append(ListedScan(name, surface["name"], state, why))
     return sorted(rows, key=lambda row: [*_ORDER, row.state].index(row.state))

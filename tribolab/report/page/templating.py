@@ -231,12 +231,12 @@ def explained(text: str) -> list[tuple[str, str]]:
     >>> [(words, bool(tip)) for words, tip in explained("no stick-slip, no stick-slip")]
     [('no ', False), ('stick-slip', True), (', no stick-slip', False)]
     """
-    told: set[str] = set()
+    explained_terms: set[str] = set()
     pieces, end = [], 0
     for match in _TERM.finditer(text):
-        if (term := match[0].lower()) in told:
+        if (term := match[0].lower()) in explained_terms:
             continue
-        told.add(term)
+        explained_terms.add(term)
         pieces += [(text[end : match.start()], ""), (match[0], TERMS[term])]
         end = match.end()
     return [*pieces, (text[end:], "")]

@@ -73,10 +73,10 @@ def write_faulty_scans(
         fault = SCAN_FAULTS_BY_NAME[name]
         struck = fault.strike(struck, rng)
         before, files = files, _files(struck, results)
-        told = {"name": name, "what": fault.what, "severity": fault.severity, "check": fault.check}
+        entry = {"name": name, "what": fault.what, "severity": fault.severity, "check": fault.check}
         for file, content in files.items():
             if content != before[file]:
-                facts.setdefault(file, {"faults": []})["faults"].append(told)
+                facts.setdefault(file, {"faults": []})["faults"].append(entry)
     for file, content in files.items():
         (folder / file).write_bytes(content)
     return facts

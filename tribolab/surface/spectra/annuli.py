@@ -27,8 +27,8 @@ def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndar
     # imported late: scipy loads slowly
     from scipy.special import chdtri
 
-    held = np.maximum(np.asarray(independent, dtype=float), MIN_INDEPENDENT_VALUES.value)
-    freedom, widened = 2 * np.maximum(held, 1.0), 1 / np.sqrt(np.minimum(held, 1.0))
+    counts = np.maximum(np.asarray(independent, dtype=float), MIN_INDEPENDENT_VALUES.value)
+    freedom, widened = 2 * np.maximum(counts, 1.0), 1 / np.sqrt(np.minimum(counts, 1.0))
     outside = 0.5 * (1 - _CONFIDENCE)
     return (
         value * (freedom / chdtri(freedom, outside)) ** widened,
@@ -223,5 +223,5 @@ def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr
         },
         {"wavenumber": q},
     )
-    held = _mean_square(annuli.edges, q, c) if q.size > 1 else whole
-    return result.assign_attrs(parseval_error_binned=abs(held / whole - 1))
+    binned = _mean_square(annuli.edges, q, c) if q.size > 1 else whole
+    return result.assign_attrs(parseval_error_binned=abs(binned / whole - 1))

@@ -162,9 +162,9 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         ]
         power += np.sum(each, axis=0)
         squares = np.sum(tapers, axis=0) ** 2
-        worth = lines / np.mean(squares**2)
+        weight = lines / np.mean(squares**2)
         # the logarithm of a mean of few values scatters more than the mean and has longer tails
-        variance += np.mean((squares - whole**2) ** 2) / lines * (1.0 + 1.5 / worth)
+        variance += np.mean((squares - whole**2) ** 2) / lines * (1.0 + 1.5 / weight)
         first = max(first, how.first(min(stop - start for start, stop in parts)))
         unlike = max(unlike, _excess_scatter(np.array(each), np.array(tapers), lines, first))
     if first >= lines.size:
@@ -212,8 +212,8 @@ def _excess_scatter(powers: np.ndarray, tapers: np.ndarray, lines: np.ndarray, f
     if len(powers) < 2 or not known.any():
         return 1.0
     squares = np.mean(tapers**2, axis=1)[:, None]
-    worth = lines[known] * squares**2 / np.mean(tapers**4, axis=1)[:, None]
+    weights = lines[known] * squares**2 / np.mean(tapers**4, axis=1)[:, None]
     spectra = logarithm(powers[:, known] / squares)
-    mean = np.average(spectra, axis=0, weights=worth)
-    chi = worth * (spectra - mean) ** 2
+    mean = np.average(spectra, axis=0, weights=weights)
+    chi = weights * (spectra - mean) ** 2
     return float(np.sqrt(max(1.0, chi.sum() / (len(powers) - 1) / known.sum())))

@@ -114,21 +114,21 @@ def psd_1d(
     q = bins.nodes * spacing
     slope = np.gradient(np.log(np.maximum(mean, 1e-300)), np.log(q)) if q.size > 2 else 0 * q
     ratio, independent = shape(bins, np.clip(slope, -6, 1), points / length, flanks)
-    worth, effect = number * independent, None
+    counts, effect = number * independent, None
     if missing is not None:
         effect = profile_gap_effect(
             heights.values, missing, Transform(bins, length, taken, flanks, workers)
         )
-        mean, worth = mean * np.exp(-effect.shift), effective_values(worth, effect)
+        mean, counts = mean * np.exp(-effect.shift), effective_values(counts, effect)
     value = mean / ratio
-    low, high = confidence_band(value, worth)
+    low, high = confidence_band(value, counts)
     edges = bins.edges * spacing
     data = xr.Dataset(
         {
             "psd_1d": ("wavenumber", value),
             "psd_1d_low": ("wavenumber", low),
             "psd_1d_high": ("wavenumber", high),
-            "independent_values": ("wavenumber", worth),
+            "independent_values": ("wavenumber", counts),
             "mean_square_height": ("wavenumber", 2 * mean * bins.counts * spacing),
         },
         {

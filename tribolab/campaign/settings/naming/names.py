@@ -166,5 +166,5 @@ def _instrument(campaign: Campaign, name: str) -> str:
     try:
         load_dialect(instrument_of(campaign, name))
     except ConfigError as error:
-        return error.told("campaign")
+        return error.message_for("campaign")
     return ""

@@ -51,13 +51,13 @@ def read_arrow(path: Path) -> RawFile:
         # other types (text, lists, structures) cannot be columns
         numbers = numbers if numbers.dtype.kind in "fiubMm" else np.empty(0, "U1")
         columns.append(RawColumn(name, _unit_of(table.schema.field(place)), numbers, path=name))
-    said = dict(table.schema.metadata or {})
-    kept = {str(plain(key)): value for key, value in said.items() if key not in _OF_LIBRARIES}
+    metadata = dict(table.schema.metadata or {})
+    kept = {str(plain(key)): value for key, value in metadata.items() if key not in _OF_LIBRARIES}
     settings = [setting for key, value in kept.items() for setting in settings_of(key, value)]
     return RawFile(path, form, (RawTable("", tuple(columns)),), tuple(settings))
 
 
 def _unit_of(field: Any) -> str | None:
     """Return the unit in a column's metadata."""
-    said = {str(plain(k)).lower(): str(plain(v)) for k, v in (field.metadata or {}).items()}
-    return next((said[key] for key in keys_of("unit") if said.get(key, "").strip()), None)
+    metadata = {str(plain(k)).lower(): str(plain(v)) for k, v in (field.metadata or {}).items()}
+    return next((metadata[key] for key in keys_of("unit") if metadata.get(key, "").strip()), None)

@@ -65,7 +65,7 @@ class _Channel(NamedTuple):
 class _Records(NamedTuple):
     """Settings of the header, with offset, type and layout of the numbers."""
 
-    said: list[Setting]
+    settings: list[Setting]
     offset: int
     kind: np.dtype[np.generic]
     channels: list[_Channel]
@@ -101,19 +101,19 @@ def read_declared_records(path: Path) -> RawFile:
     An encoder that wraps is unwrapped to turns, as it moves less than half of its range per row.
     """
     with path.open("rb") as file:
-        told = _declared(file.read(_MAX_HEADER))
+        records = _declared(file.read(_MAX_HEADER))
         size = file.seek(0, 2)
-    if told is None:
+    if records is None:
         raise ReadError("no header says how its binary numbers are to be read", where=path)
-    rows = (size - told.offset) // told.kind.itemsize // len(told.channels)
-    shape = (rows, len(told.channels)) if told.interleaved else (len(told.channels), rows)
-    raw = np.memmap(path, told.kind, "r", told.offset, shape) if rows else np.empty(shape)
-    table = raw if told.interleaved else raw.T
+    rows = (size - records.offset) // records.kind.itemsize // len(records.channels)
+    shape = (rows, len(records.channels)) if records.interleaved else (len(records.channels), rows)
+    raw = np.memmap(path, records.kind, "r", records.offset, shape) if rows else np.empty(shape)
+    table = raw if records.interleaved else raw.T
     columns = tuple(
         RawColumn(channel.name, channel.unit or None, _in_units(table[:, place], channel))
-        for place, channel in enumerate(told.channels)
+        for place, channel in enumerate(records.channels)
     )
-    return RawFile(path, "declared records", (RawTable("", columns),), tuple(told.said))
+    return RawFile(path, "declared records", (RawTable("", columns),), tuple(records.settings))
 
 
 def _in_units(raw: np.ndarray, channel: _Channel) -> np.ndarray:
@@ -130,8 +130,8 @@ def _declared(head: bytes) -> _Records | None:
     text = first.split(b"\0")[0].decode("latin-1")
     settings: dict[str, str] = {}
     for line in text.replace("\r", "").split("\n"):
-        if (said := _SETTING.match(line)) and line.isprintable():
-            settings.setdefault(said["key"].strip().lower(), said["value"])
+        if (setting := _SETTING.match(line)) and line.isprintable():
+            settings.setdefault(setting["key"].strip().lower(), setting["value"])
     kind = _kind(settings)
     end = _END.search(text)
     offset = _whole(_first(settings, _OFFSET)) or (_end_of_line(text, end) if end else 0)
@@ -143,7 +143,7 @@ def _declared(head: bytes) -> _Records | None:
     if not channels or (count and count != len(channels)):
         return None
     how = _first(settings, _LAYOUT)
-    return _Records(_said(above), offset, kind, channels, not _APART.search(how))
+    return _Records(_settings_in(above), offset, kind, channels, not _APART.search(how))
 
 
 def _end_of_line(text: str, mark: re.Match[str]) -> int:
@@ -162,10 +162,10 @@ def _whole(text: str) -> int:
 
 
 def _kind(settings: dict[str, str]) -> np.dtype[np.generic] | None:
-    said = _first(settings, _TYPE).lower().strip("\"' ")
+    kind = _first(settings, _TYPE).lower().strip("\"' ")
     order = _first(settings, _ORDER).lower()
-    big = bool(re.search(r"big|msb|motorola|be\b|>", order or said))
-    bare = re.sub(r"[<>=]|[ _-]?(?:le|be|little|big)(?:[ _-]?endian)?$", "", said).strip()
+    big = bool(re.search(r"big|msb|motorola|be\b|>", order or kind))
+    bare = re.sub(r"[<>=]|[ _-]?(?:le|be|little|big)(?:[ _-]?endian)?$", "", kind).strip()
     name = _TYPES.get(bare)
     return np.dtype((">" if big else "<") + name) if name else None
 
@@ -177,12 +177,12 @@ def _channels(settings: dict[str, str], text: str) -> list[_Channel]:
         text_of = next((v for k, v in settings.items() if _NAMES.fullmatch(k) and "," in v), "")
         listed = [name.strip() for name in text_of.split(",")] if text_of else []
     formula = _FORMULA.search(text)
-    found = [_channel(said, formula["sign"] if formula else "") for said in listed]
+    found = [_channel(declared, formula["sign"] if formula else "") for declared in listed]
     names = [channel.name for channel in found]
     return found if all(names) and len(set(names)) == len(names) else []
 
 
-def _channel(said: str, inside: str) -> _Channel:
+def _channel(declared: str, inside: str) -> _Channel:
     """Return the declaration of a channel.
 
     >>> _channel("FT unit=N scale=0.1 bias=2", "")[:4], _channel("FN, N", "")[:2]
@@ -190,9 +190,9 @@ def _channel(said: str, inside: str) -> _Channel:
     >>> _channel("enc unit=counts (4096 per turn, wraps to 0)", "")
     _Channel(name='angle', unit='turn', scale=1.0, bias=0.0, turn=4096.0, wrap=4096.0)
     """
-    pairs = {m["key"].lower(): m["value"] for m in _PAIR.finditer(said)}
-    start = _PAIR.search(said)
-    plain = (said[: start.start()] if start else said).strip(" ,;\t\"'")
+    pairs = {m["key"].lower(): m["value"] for m in _PAIR.finditer(declared)}
+    start = _PAIR.search(declared)
+    plain = (declared[: start.start()] if start else declared).strip(" ,;\t\"'")
     name, unit = _split_name(plain)
     words = [word.strip() for word in re.split(r"[,;\t]", name)]
     unit = next((pairs[k] for k in _UNIT if k in pairs), unit)
@@ -201,9 +201,9 @@ def _channel(said: str, inside: str) -> _Channel:
     scale = _number(next((pairs[k] for k in _SCALE if k in pairs), ""), 1.0)
     bias = _number(next((pairs[k] for k in _BIAS if k in pairs), ""), 0.0)
     bias = {"-": -bias * scale, "+": bias * scale}.get(inside, bias)
-    turn = _TURN.search(said)
-    if turn and _WRAPS.search(said):
-        at = _WRAPS_AT.search(said)
+    turn = _TURN.search(declared)
+    if turn and _WRAPS.search(declared):
+        at = _WRAPS_AT.search(declared)
         counts = float(turn["counts"])
         wrap = float(at["at"]) if at else counts
         return _Channel("angle", "turn", 1.0, 0.0, counts, wrap)
@@ -223,16 +223,16 @@ def _number(text: str, otherwise: float) -> float:
         return otherwise
 
 
-def _said(text: str) -> list[Setting]:
+def _settings_in(text: str) -> list[Setting]:
     """Return the lines of a header except channels as settings, with units after numbers."""
     found: list[Setting] = []
     for line in text.replace("\r", "").split("\n"):
-        said = _SETTING.match(line)
-        if said and _CHANNEL.fullmatch(said["key"].lower()):
+        setting = _SETTING.match(line)
+        if setting and _CHANNEL.fullmatch(setting["key"].lower()):
             continue
-        if said and re.fullmatch(r"[-+]?[\d.]+(?:e[-+]?\d+)?", said["value"], re.IGNORECASE):
-            key, unit = without_unit(said["key"])
-            found.append(Setting(key, f"{said['value']} {unit}".rstrip()))
+        if setting and re.fullmatch(r"[-+]?[\d.]+(?:e[-+]?\d+)?", setting["value"], re.IGNORECASE):
+            key, unit = without_unit(setting["key"])
+            found.append(Setting(key, f"{setting['value']} {unit}".rstrip()))
         elif line.strip():
             found.append(Setting("", line))
     return found

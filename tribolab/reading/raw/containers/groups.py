@@ -43,7 +43,7 @@ class Groups:
         for name in order:
             title = [Setting("", name, source="title"), *self._settings.get(name, [])]
             tables.append(RawTable(name, tuple(self._columns[name]), tuple(title if name else [])))
-        rest = (s for name, said in self._settings.items() if name not in apart for s in said)
+        rest = (s for name, group in self._settings.items() if name not in apart for s in group)
         return RawFile(path, container, tuple(tables), tuple(rest))
 
 

@@ -121,9 +121,9 @@ class _Found:
         single = values.dtype.kind not in "fiu" or values.size < 2
         if single or values.size != max(values.shape):
             return  # not a single column
-        said = str(unit) if unit is not None else None
+        unit_text = str(unit) if unit is not None else None
         path = f"{group}/{label}" if group else label
-        self.groups.add_column(group, RawColumn(label, said, values.ravel(), meaning, path))
+        self.groups.add_column(group, RawColumn(label, unit_text, values.ravel(), meaning, path))
 
     def _elements(self, name: str, item: Any) -> None:
         """Read a field of a structure array, whose values are stored elsewhere."""
@@ -158,11 +158,11 @@ def _first(item: Any, keys: Sequence[str]) -> object:
     """Return the first existing one of some attributes: a text, or a list of texts."""
     for key in keys:
         if key in item.attrs:
-            said = plain(item.attrs[key])
-            if isinstance(said, list):
-                said = [plain(each) for each in said]
-            if isinstance(said, str) and said.strip() or isinstance(said, list):
-                return said
+            value = plain(item.attrs[key])
+            if isinstance(value, list):
+                value = [plain(each) for each in value]
+            if isinstance(value, str) and value.strip() or isinstance(value, list):
+                return value
     return None
 
 
@@ -177,8 +177,8 @@ def _split_units(units: object, width: int) -> list[str | None]:
 
 
 def _of_field(item: Any, place: int) -> str | None:
-    said = plain(item.attrs.get(f"FIELD_{place}_UNITS", item.attrs.get(f"FIELD_{place}_UNIT")))
-    return str(said) if said is not None else None
+    unit_text = plain(item.attrs.get(f"FIELD_{place}_UNITS", item.attrs.get(f"FIELD_{place}_UNIT")))
+    return str(unit_text) if unit_text is not None else None
 
 
 def _labels_of_matrix(item: Any) -> list[str]:
@@ -188,9 +188,9 @@ def _labels_of_matrix(item: Any) -> list[str]:
     for key in _NAMES:
         if key not in item.attrs:
             continue
-        said = plain(item.attrs[key])
-        if isinstance(said, str):
-            said = [text.strip() for text in said.replace(";", ",").split(",")]
-        if isinstance(said, list) and len(said) == item.shape[1]:
-            return [str(plain(text)) for text in said]
+        names = plain(item.attrs[key])
+        if isinstance(names, str):
+            names = [text.strip() for text in names.replace(";", ",").split(",")]
+        if isinstance(names, list) and len(names) == item.shape[1]:
+            return [str(plain(text)) for text in names]
     return []

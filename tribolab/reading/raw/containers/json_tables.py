@@ -34,7 +34,7 @@ class _Table(NamedTuple):
 
     columns: dict[str, list[float]]
     units: dict[str, str]
-    said: list[Setting]
+    settings: list[Setting]
 
 
 def has_tables(text: str) -> bool:
@@ -75,7 +75,7 @@ def read_json(path: Path) -> RawFile:
     >>> table.settings[0].line, [(column.label, column.unit) for column in table.columns]
     ('r: 5 mm', [('t', 's'), ('F', None)])
     """
-    tables, said, units = _tables(path.read_text("utf-8-sig"))
+    tables, settings, units = _tables(path.read_text("utf-8-sig"))
     if not tables:
         raise ReadError("no columns of numbers are in the file", where=path)
     sizes: Counter[tuple[str, ...]] = Counter()
@@ -91,8 +91,8 @@ def read_json(path: Path) -> RawFile:
             for name in chosen[0].columns
         )
         name = f"Step {number}" if len(chosen) > 1 else ""
-        found.append(RawTable(name, columns, tuple(_with_units(table.said, units))))
-    return RawFile(path, "json", tuple(found), tuple(said[:_MAX_SETTINGS]))
+        found.append(RawTable(name, columns, tuple(_with_units(table.settings, units))))
+    return RawFile(path, "json", tuple(found), tuple(settings[:_MAX_SETTINGS]))
 
 
 def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
@@ -103,10 +103,10 @@ def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
     except (ValueError, RecursionError):
         return [], [], {}
     tables: list[_Table] = []
-    said = _walk(document, "", tables, 0)
+    settings = _walk(document, "", tables, 0)
     names = {name for table in tables for name in table.columns}
     units = dict(_units(document, names, "", 0))
-    return tables, _with_units(said, units), units
+    return tables, _with_units(settings, units), units
 
 
 def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int) -> list[Setting]:
@@ -124,17 +124,17 @@ def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int)
             if isinstance(inner, dict | list) and _setting(name, inner) is None:
                 own += _walk(inner, name, tables, depth + 1)
         if len(tables) == before + 1 and depth:  # settings next to a single table belong to it
-            tables[-1] = tables[-1]._replace(said=[*own, *tables[-1].said])
+            tables[-1] = tables[-1]._replace(settings=[*own, *tables[-1].settings])
             return []
         return own
     if columns:
         tables.append(_Table(columns, units, []))
         return []
-    said: list[Setting] = []
+    settings: list[Setting] = []
     for inner in part:
         if isinstance(inner, dict | list):
-            said += _walk(inner, key, tables, depth + 1)
-    return said
+            settings += _walk(inner, key, tables, depth + 1)
+    return settings
 
 
 def _columns(part: object) -> tuple[dict[str, list[float]], dict[str, str]]:
@@ -167,9 +167,9 @@ def _named(one: object) -> tuple[str, str]:
         return one, ""
     if not isinstance(one, dict):
         return "", ""
-    told = {k.lower(): v for k, v in one.items() if isinstance(v, str)}
-    name = next((told[k] for k in keys_of("name") if k in told), "")
-    return name, next((told[k] for k in keys_of("unit") if k in told), "")
+    texts = {k.lower(): v for k, v in one.items() if isinstance(v, str)}
+    name = next((texts[k] for k in keys_of("name") if k in texts), "")
+    return name, next((texts[k] for k in keys_of("unit") if k in texts), "")
 
 
 def _values_of(one: Json) -> list[float] | None:
@@ -219,16 +219,16 @@ def _of_rows(names: list[str], rows: list[object]) -> dict[str, list[float]]:
 def _settings_of_object(part: Json, key: str) -> list[Setting]:
     """Return the single values of an object as settings, e.g. "radius: 15 mm"."""
     before = f"{_clean(key)} " if _SET.fullmatch(key) else ""
-    found = (said for name, value in part.items() if (said := _setting(name, value)))
+    found = (settings for name, value in part.items() if (settings := _setting(name, value)))
     few = islice(found, _MAX_SETTINGS)
     return [s._replace(key=f"{before}{s.key}", text=s.text[:_MAX_SETTING]) for s in few]
 
 
 def _setting(name: str, value: object) -> Setting | None:
     if isinstance(value, dict):
-        told = {k.lower(): v for k, v in value.items()}
-        number = next((told[k] for k in keys_of("value") if k in told), None)
-        unit = next((told[k] for k in keys_of("unit") if k in told), "")
+        entries = {k.lower(): v for k, v in value.items()}
+        number = next((entries[k] for k in keys_of("value") if k in entries), None)
+        unit = next((entries[k] for k in keys_of("unit") if k in entries), "")
         if number is None or isinstance(number, dict | list):
             return None
         return Setting(_clean(name), f"{_clean(str(number))} {_clean(str(unit))}".rstrip())
@@ -243,17 +243,17 @@ def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tupl
     if depth > _DEEPEST or not isinstance(part, dict):
         return
     own = {k: v for k, v in part.items() if k in names and isinstance(v, str)}
-    told = len(own) > 1 or key.lower() in keys_of("unit")
-    if told and all(is_unit(unit) for unit in own.values() if unit):
+    names_units = len(own) > 1 or key.lower() in keys_of("unit")
+    if names_units and all(is_unit(unit) for unit in own.values() if unit):
         yield from own.items()
     for name, inner in part.items():
         yield from _units(inner, names, name, depth + 1)
 
 
-def _with_units(said: list[Setting], units: dict[str, str]) -> list[Setting]:
+def _with_units(settings: list[Setting], units: dict[str, str]) -> list[Setting]:
     """Add units to settings of the same name, and remove settings that are units."""
     found = []
-    for setting in said:
+    for setting in settings:
         unit = units.get(setting.key.split(" ")[-1], "")
         if unit == setting.text:
             continue

@@ -55,15 +55,15 @@ def read_tdms(path: Path, *, values: bool = True) -> RawFile:
         for group in file.groups():
             groups.add_settings(group.name, _settings(group.properties, group.name))
         for channel, start in zip(channels, starts, strict=True):
-            said = channel.properties
-            interval, offset = (_number(said.get(f"wf_{x}")) for x in ("increment", "start_offset"))
+            own = channel.properties
+            interval, offset = (_number(own.get(f"wf_{x}")) for x in ("increment", "start_offset"))
             if start is not None and first is not None:
                 offset += float((start - first) / np.timedelta64(1, "ns")) / 1e9
             column = RawColumn(
                 channel.name,
-                next((text for key in _UNITS if (text := str(said.get(key, "")).strip())), None),
+                next((text for key in _UNITS if (text := str(own.get(key, "")).strip())), None),
                 np.asarray(channel[:]) if values and len(channel) else np.empty(0),
-                str(said.get("description", "")),
+                str(own.get("description", "")),
                 f"{channel.group_name}/{channel.name}",
                 Clock(offset, interval) if interval > 0 else None,
             )
@@ -79,8 +79,8 @@ def _settings(properties: Mapping[str, Any], path: str) -> list[Any]:
     return [s for key, value in plain.items() for s in settings_of(str(key), value, path)]
 
 
-def _number(said: object) -> float:
-    return float(said) if isinstance(said, int | float) and np.isfinite(said) else 0.0
+def _number(value: object) -> float:
+    return float(value) if isinstance(value, int | float) and np.isfinite(value) else 0.0
 
 
 def _started(properties: Mapping[str, Any]) -> np.datetime64 | None:

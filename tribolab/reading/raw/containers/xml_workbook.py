@@ -70,7 +70,7 @@ class XmlWorkbook:
         parser = expat.ParserCreate(namespace_separator=" ")
         parser.StartElementHandler = self._begin
         parser.EndElementHandler = self._end
-        parser.CharacterDataHandler = self._said
+        parser.CharacterDataHandler = self._add_text
         parser.EntityDeclHandler = self._refuse  # entities are not expanded
         try:
             with path.open("rb") as file:
@@ -94,20 +94,20 @@ class XmlWorkbook:
 
     def _begin(self, tag: str, attributes: dict[str, str]) -> None:
         kind = tag.rpartition(" ")[2]
-        said = {name.rpartition(" ")[2]: value for name, value in attributes.items()}
+        values = {name.rpartition(" ")[2]: value for name, value in attributes.items()}
         if kind == "Worksheet":
-            self._rows = self._sheets.setdefault(said.get("Name", str(len(self._sheets) + 1)), [])
+            self._rows = self._sheets.setdefault(values.get("Name", str(len(self._sheets) + 1)), [])
         elif kind == "Row":
             self._row, self._place = [], 0
-            self._fill(self._rows, said.get("Index"), [])
+            self._fill(self._rows, values.get("Index"), [])
         elif kind == "Cell":
-            self._fill(self._row, said.get("Index"), "")
+            self._fill(self._row, values.get("Index"), "")
             self._row.append("")
             self._cells += 1
             if self._cells > _MAX_CELLS:
                 raise ReadError("the workbook is larger than a table of numbers", where=self._path)
         elif kind == "Data":
-            self._is_number, self._text = said.get("Type") == "Number", []
+            self._is_number, self._text = values.get("Type") == "Number", []
 
     def _fill(self, cells: list[Any], index: str | None, empty: object) -> None:
         """Add the empty cells or rows before one with an explicit number, from 1."""
@@ -117,7 +117,7 @@ class XmlWorkbook:
                 raise ReadError("the workbook is larger than a table of numbers", where=self._path)
             cells.extend([empty] * (int(index) - 1 - len(cells)))
 
-    def _said(self, text: str) -> None:
+    def _add_text(self, text: str) -> None:
         if self._text is not None:
             self._text.append(text)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.core.errors import shown
 from tribolab.reading.lexicon.lexicon import keys_of, normalise_label, words_of
-from tribolab.reading.scans.formats.named_arrays import HeldArray
+from tribolab.reading.scans.formats.named_arrays import NamedArray
 from tribolab.reading.scans.unit_words import axes_of, is_about_heights, stated_units
 from tribolab.units.spellings import MICRO, unit_of_length
 
@@ -67,14 +67,14 @@ def stated_unit(texts: Mapping[str, str], axis: str) -> str | None:
 
 def _axes(words: str) -> set[str]:
     """Return the axes named by words: by letter, or as lateral or height direction."""
-    said = set(words_of(words))
-    axes = axes_of(words) | ({"x", "y"} if said & _LATERAL else set())
-    up = not axes and (is_about_heights(words) or said & _VALUES)
+    words_used = set(words_of(words))
+    axes = axes_of(words) | ({"x", "y"} if words_used & _LATERAL else set())
+    up = not axes and (is_about_heights(words) or words_used & _VALUES)
     return axes | {"z"} if up else axes
 
 
 def scaled(
-    heights: HeldArray, z: np.ndarray, unit: str | None, beside: Iterable[HeldArray]
+    heights: NamedArray, z: np.ndarray, unit: str | None, others: Iterable[NamedArray]
 ) -> tuple[np.ndarray, str | None, list[str]]:
     """Return heights scaled by their attributes, their unit, and the sentinels removed.
 
@@ -87,31 +87,33 @@ def scaled(
         The numbers, possibly transposed.
     unit
         Unit of the heights, if known.
-    beside
+    others
         Other arrays: single numbers such as ``z_scale`` apply to heights in counts.
     """
-    said = {key: value for key, value in heights.attrs.items() if _is_number(value)}
+    stated = {key: value for key, value in heights.attrs.items() if _is_number(value)}
     if heights.values.dtype.kind in "iu":
-        singles = {a.name: float(a.values) for a in beside if a.values.ndim == 0}
+        singles = {a.name: float(a.values) for a in others if a.values.ndim == 0}
         named = {re.split(r"[./]", key)[-1]: value for key, value in singles.items()}
-        said = {k: v for k, v in named.items() if _OF_HEIGHTS.match(k) or _FILL.search(k)} | said
+        stated = {
+            k: v for k, v in named.items() if _OF_HEIGHTS.match(k) or _FILL.search(k)
+        } | stated
     z = z.copy()
-    told = []
-    for key, value in said.items():
+    lost = []
+    for key, value in stated.items():
         none = z == value
         if _FILL.search(key) and none.any():
             z[none] = np.nan
-            told.append(f"height: {value:.9g} {int(none.sum())} times, as '{shown(key)}' says")
-    for key, value in said.items():
+            lost.append(f"height: {value:.9g} {int(none.sum())} times, as '{shown(key)}' says")
+    for key, value in stated.items():
         if (scale := _SCALE.match(key)) is not None and value:
             z *= value
             unit = unit_of_length(scale["unit"]) if scale["unit"] else unit
             break
-    for key, value in said.items():
+    for key, value in stated.items():
         if _OFFSET.match(key):
             z += value
             break
-    return z, unit, told
+    return z, unit, lost
 
 
 def unit_of_scale(attrs: Mapping[str, object]) -> str | None:

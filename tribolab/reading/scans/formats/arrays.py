@@ -20,9 +20,9 @@ from tribolab.reading.scans.formats.array_units import (
     tokens,
     unit_of_scale,
 )
-from tribolab.reading.scans.formats.named_arrays import HeldArray, HeldArrays, read_arrays
-from tribolab.reading.scans.formats.named_units import unsaid
-from tribolab.reading.scans.formats.profilometers import NotSaidError
+from tribolab.reading.scans.formats.named_arrays import NamedArray, NamedArrays, read_arrays
+from tribolab.reading.scans.formats.named_units import unit_remedy
+from tribolab.reading.scans.formats.profilometers import MissingUnitError
 from tribolab.reading.scans.grid import even
 from tribolab.reading.scans.header import map_header
 from tribolab.reading.text.cells import split_name
@@ -71,26 +71,26 @@ def read_scan_arrays(
 
     Raises
     ------
-    NotSaidError
+    MissingUnitError
         If the pitch or the unit of heights is not stated.
     ReadError
         If several arrays may be the heights, or their sizes match no positions.
     """
-    held = read_arrays(path)
-    heights = _heights(path, held)
+    stored = read_arrays(path)
+    heights = _heights(path, stored)
     if heights is None:
         return None
     z = np.asarray(heights.values, dtype=float)
     attrs: dict[str, str | float] = {"instrument": "arrays by name"}
-    along = {name: _positions(held.arrays, name, heights) for name in "xy"}
+    along = {name: _positions(stored.arrays, name, heights) for name in "xy"}
     z, along = _orient(path, heights.name, z, along)
-    unit = _unit_of(heights, "z", held) or height_unit
-    z, unit, lost = scaled(heights, z, unit, held.arrays)
-    lost += _without_invalid(held.arrays, heights, z)
+    unit = _unit_of(heights, "z", stored) or height_unit
+    z, unit, lost = scaled(heights, z, unit, stored.arrays)
+    lost += _without_invalid(stored.arrays, heights, z)
     lost += [f"height: {mark.words}" for mark in take_marks([z.reshape(-1)])]
     if lost:
         attrs["taken_for_missing"] = "; ".join(lost)
-    steps = _steps(heights, held, z.shape, along, x_unit)
+    steps = _steps(heights, stored, z.shape, along, x_unit)
     lacking = [f"the unit of the heights ('{shown(heights.name)}')"] if unit is None else []
     is_map = z.ndim == 2 and (along["y"] is not None or steps["y"] is not None)
     if z.ndim == 2 and not is_map and along["x"] is None:
@@ -104,10 +104,10 @@ def read_scan_arrays(
         )
         lacking.append(of)
     if lacking or unit is None:
-        raise NotSaidError(
+        raise MissingUnitError(
             f"{' and '.join(lacking)} {'is' if len(lacking) == 1 else 'are'} not said",
             where=path,
-            cure=unsaid(path, along=steps["x"] is None, up=unit is None),
+            cure=unit_remedy(path, along=steps["x"] is None, up=unit is None),
         )
     z = measurable(conversion(unit, "m")[0] * z)
     x, z, evened = _on_even_grid(path, steps["x"], z)
@@ -129,17 +129,17 @@ def is_map_file(path: Path) -> bool:
     ReadError
         If it is damaged, or several arrays may be the heights.
     """
-    held = read_arrays(path)
-    heights = _heights(path, held)
+    stored = read_arrays(path)
+    heights = _heights(path, stored)
     if heights is None or heights.values.ndim != 2:
         return False
     sure = bool(tokens(heights.name) & _HEIGHTS) or _own_unit(heights) is not None
-    return sure or any(_positions(held.arrays, axis, heights) is not None for axis in "xy")
+    return sure or any(_positions(stored.arrays, axis, heights) is not None for axis in "xy")
 
 
-def _heights(path: Path, held: HeldArrays) -> HeldArray | None:
+def _heights(path: Path, stored: NamedArrays) -> NamedArray | None:
     """Return the only array with a name of heights, or the only matrix with a unit of length."""
-    large = [a for a in held.arrays if a.values.ndim in (1, 2) and a.values.size >= _MIN_ROWS]
+    large = [a for a in stored.arrays if a.values.ndim in (1, 2) and a.values.size >= _MIN_ROWS]
     if any(tokens(a.name) & _OF_RUNS for a in large if a.values.ndim == 1):
         return None
     matrices = [a for a in large if a.values.ndim == 2 and max(a.values.shape) >= _MIN_ROWS]
@@ -152,7 +152,7 @@ def _heights(path: Path, held: HeldArrays) -> HeldArray | None:
                 raise ReadError(
                     f"{len(named)} arrays may be the heights: {names}; save one alone", where=path
                 )
-            if named and (some is matrices or _positions(held.arrays, "x", named[0]) is not None):
+            if named and (some is matrices or _positions(stored.arrays, "x", named[0]) is not None):
                 return named[0]
     axes = [*_ALONG["x"], *_ALONG["y"]]
     left = [a for a in matrices if not tokens(a.name) & {*_NO_HEIGHTS, *axes}]
@@ -160,7 +160,7 @@ def _heights(path: Path, held: HeldArrays) -> HeldArray | None:
     return known[0] if len(known) == 1 else None
 
 
-def _positions(arrays: Sequence[HeldArray], axis: str, heights: HeldArray) -> HeldArray | None:
+def _positions(arrays: Sequence[NamedArray], axis: str, heights: NamedArray) -> NamedArray | None:
     """Return the array of positions along an axis; of a mesh one line."""
     for words in (_ALONG[axis], _PLACES if axis == "x" else frozenset()):
         for array in arrays:
@@ -176,8 +176,8 @@ def _positions(arrays: Sequence[HeldArray], axis: str, heights: HeldArray) -> He
 
 
 def _orient(
-    path: Path, name: str, z: np.ndarray, along: dict[str, HeldArray | None]
-) -> tuple[np.ndarray, dict[str, HeldArray | None]]:
+    path: Path, name: str, z: np.ndarray, along: dict[str, NamedArray | None]
+) -> tuple[np.ndarray, dict[str, NamedArray | None]]:
     """Return heights with x along the last dimension, and the positions by axis."""
     if z.ndim == 1:
         return z, {**along, "y": None}
@@ -196,48 +196,48 @@ def _orient(
 
 
 def _steps(
-    heights: HeldArray,
-    held: HeldArrays,
+    heights: NamedArray,
+    stored: NamedArrays,
     shape: tuple[int, ...],
-    along: dict[str, HeldArray | None],
+    along: dict[str, NamedArray | None],
     x_unit: str | None,
 ) -> dict[str, np.ndarray | None]:
     """Return positions along x and y [m], from arrays or from a stated pitch; None if unknown."""
     rows, columns = shape if len(shape) == 2 else (1, shape[0])
     own = [
-        HeldArray(key, np.asarray(value).reshape(-1)[0], _unit_beside(heights.attrs, key))
+        NamedArray(key, np.asarray(value).reshape(-1)[0], _unit_attribute(heights.attrs, key))
         for key, value in heights.attrs.items()
         if isinstance(value, int | float | np.number) or _is_one_number(value)
     ]
     lines = [
         f"{_words_without_unit(array.name)} [{unit}]: {float(array.values):.12g}"
-        for array in (*held.arrays, *own)
-        if array.values.ndim == 0 and (unit := _unit_of(array, "x", held) or x_unit)
+        for array in (*stored.arrays, *own)
+        if array.values.ndim == 0 and (unit := _unit_of(array, "x", stored) or x_unit)
     ]
-    lines += [f"{key.replace('_', ' ')}: {text}" for key, text in held.texts.items()]
+    lines += [f"{key.replace('_', ' ')}: {text}" for key, text in stored.texts.items()]
     header = map_header(lines, (rows, columns), ".")
     steps: dict[str, np.ndarray | None] = {}
     for axis, number, pitch in (("x", columns, header.dx), ("y", rows, header.dy)):
         array = along[axis]
         steps[axis] = None if pitch is None else pitch * np.arange(number)
         if array is not None:
-            unit = _unit_of(array, axis, held) or x_unit
+            unit = _unit_of(array, axis, stored) or x_unit
             steps[axis] = None if unit is None else conversion(unit, "m")[0] * array.values
     if len(shape) == 2 and along["x"] is not None and along["y"] is None and rows < columns:
         steps["y"] = None  # side-by-side profiles
     return steps
 
 
-def _unit_of(array: HeldArray, axis: str, held: HeldArrays) -> str | None:
-    return _own_unit(array) or stated_unit(held.texts, axis)
+def _unit_of(array: NamedArray, axis: str, stored: NamedArrays) -> str | None:
+    return _own_unit(array) or stated_unit(stored.texts, axis)
 
 
-def _own_unit(array: HeldArray) -> str | None:
+def _own_unit(array: NamedArray) -> str | None:
     """Return the unit of length in an array's attributes or name; None without one."""
-    said = next((value for key, value in array.attrs.items() if key.lower() in UNITS), None)
+    own_unit = next((value for key, value in array.attrs.items() if key.lower() in UNITS), None)
     name, bracket = split_name(array.name)
     last = re.split(r"[\W_]+", name)[-1]
-    for unit in (said, bracket, last if len(re.split(r"[\W_]+", name)) > 1 else None):
+    for unit in (own_unit, bracket, last if len(re.split(r"[\W_]+", name)) > 1 else None):
         if isinstance(unit, str) and (length := unit_of_length(unit)):
             return length
     return unit_of_scale(array.attrs)
@@ -251,18 +251,18 @@ def _is_one_number(value: object) -> bool:
     return bool(both.size and both.dtype.kind in "iuf" and (both == both.flat[0]).all())
 
 
-def _unit_beside(attrs: Json, key: str) -> Json:
+def _unit_attribute(attrs: Json, key: str) -> Json:
     """Return the unit of an attribute from another attribute, e.g. ``pixel_size_unit``.
 
     It may apply to both axes.
 
-    >>> _unit_beside({"pixel_size_unit": "um"}, "pixel_size_x")
+    >>> _unit_attribute({"pixel_size_unit": "um"}, "pixel_size_x")
     {'unit': 'um'}
     """
     both = re.sub(r"^[xy]_|_[xy]$", "", key)
     names = [name for base in (key, both) for u in UNITS for name in (f"{base}_{u}", f"{u}_{base}")]
-    said = (attrs.get(name) for name in names)
-    return next(({"unit": text} for text in said if isinstance(text, str)), {})
+    texts = (attrs.get(name) for name in names)
+    return next(({"unit": text} for text in texts if isinstance(text, str)), {})
 
 
 def _words_without_unit(name: str) -> str:
@@ -275,9 +275,9 @@ def _words_without_unit(name: str) -> str:
     return " ".join(words[:-1] if len(words) > 1 and unit_of_length(words[-1]) else words)
 
 
-def _without_invalid(arrays: Iterable[HeldArray], heights: HeldArray, z: np.ndarray) -> list[str]:
+def _without_invalid(arrays: Iterable[NamedArray], heights: NamedArray, z: np.ndarray) -> list[str]:
     """Replace heights marked as invalid by a mask array by NaN, and note their number."""
-    told = []
+    removed = []
     for array in arrays:
         values = np.asarray(array.values)
         words = tokens(array.name)
@@ -292,8 +292,8 @@ def _without_invalid(arrays: Iterable[HeldArray], heights: HeldArray, z: np.ndar
         lost = int((~good & np.isfinite(z)).sum())
         z[~good] = np.nan
         if lost:
-            told.append(f"height: {lost} by '{shown(array.name)}'")
-    return told
+            removed.append(f"height: {lost} by '{shown(array.name)}'")
+    return removed
 
 
 def _on_even_grid(

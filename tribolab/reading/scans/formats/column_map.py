@@ -92,10 +92,10 @@ def _is_column_by_column(path: Path, above: list[str]) -> bool:
     """Whether the heights are stored column by column; raise if a stated order is unknown."""
     if any(_states(line, "by_columns") for line in above):
         return True
-    said = [line for line in above if _states(line, "to_and_fro")]
-    if said and not any(_states(line, "by_rows") for line in above):
+    turning = [line for line in above if _states(line, "to_and_fro")]
+    if turning and not any(_states(line, "by_rows") for line in above):
         raise RefusedScanError(
-            f"the order of the heights is not understood: '{shown(said[0].strip(), 80)}'",
+            f"the order of the heights is not understood: '{shown(turning[0].strip(), 80)}'",
             where=path,
             cure="save it as a matrix, or say 'row by row' or 'column by column'",
         )
@@ -125,8 +125,8 @@ def _header(above: list[str], mark: str) -> MapHeader | None:
         or min(counts.rows, counts.columns) < _MIN_ROWS
     ):
         return None
-    told = map_header(above, (counts.rows, counts.columns), mark)
-    return told if told.dx and told.dy and told.height else None
+    found = map_header(above, (counts.rows, counts.columns), mark)
+    return found if found.dx and found.dy and found.height else None
 
 
 def _begin(lines: list[str]) -> tuple[int, str] | None:

@@ -17,8 +17,8 @@ from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.raw.unpacked import ZIP, is_workbook
 from tribolab.reading.scans.formats.matrix import GRAMMARS, cells_of, texts_of, value_of
-from tribolab.reading.scans.formats.named_units import unsaid
-from tribolab.reading.scans.formats.profilometers import NotSaidError
+from tribolab.reading.scans.formats.named_units import unit_remedy
+from tribolab.reading.scans.formats.profilometers import MissingUnitError
 from tribolab.reading.scans.header import map_header
 from tribolab.units.conversion import conversion
 
@@ -58,7 +58,7 @@ def read_labelled_map(
 
     Raises
     ------
-    NotSaidError
+    MissingUnitError
         If units of positions or heights are not stated.
     """
     found = next(filter(None, starmap(_map_of, _tables(path))), None)
@@ -70,11 +70,11 @@ def read_labelled_map(
     height = conversion(height_unit, "m")[0] if height_unit else header.height
     lacking = ["positions"] * (along is None) + ["heights"] * (height is None)
     if along is None or height is None:
-        raise NotSaidError(
+        raise MissingUnitError(
             "a map with positions along two sides that does not say the unit of its "
             f"{' and '.join(lacking)}",
             where=path,
-            cure=unsaid(path, along=along is None, up=height is None),
+            cure=unit_remedy(path, along=along is None, up=height is None),
         )
     heights = height * found.heights
     attrs = {"instrument": "map with positions along two sides, by its header"}

@@ -15,8 +15,8 @@ import xarray as xr
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import Marked, measurable, take_marks
-from tribolab.reading.scans.formats.named_units import unsaid
-from tribolab.reading.scans.formats.profilometers import NotSaidError
+from tribolab.reading.scans.formats.named_units import unit_remedy
+from tribolab.reading.scans.formats.profilometers import MissingUnitError
 from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range
 from tribolab.reading.scans.stated_missing import take_stated
 from tribolab.units.conversion import conversion
@@ -83,7 +83,7 @@ def read_matrix(
 
     Raises
     ------
-    NotSaidError
+    MissingUnitError
         If the pitch or the unit of heights is not stated.
     ReadError
         If the numbers of rows and columns differ from the stated ones, or there are several
@@ -93,7 +93,7 @@ def read_matrix(
         head = file.read(_HEAD)
     if not any(_matrix(text.splitlines()) for text in texts_of(head)):
         return None
-    told: tuple[_Matrix, MapHeader] | None = None
+    found: tuple[_Matrix, MapHeader] | None = None
     for text in texts_of(path.read_bytes()):
         matrix = _matrix(text.splitlines())
         if matrix is None:
@@ -105,19 +105,19 @@ def read_matrix(
         )
         if header.height is None and height_unit is not None:
             header = header._replace(height=conversion(height_unit, "m")[0])
-        if told is None or (header.dx and header.dy and header.height):
-            told = matrix, header
-    if told is None:
+        if found is None or (header.dx and header.dy and header.height):
+            found = matrix, header
+    if found is None:
         return None
-    matrix, header = told
+    matrix, header = found
     if matrix.columns < _MIN_COLUMNS and header.columns != matrix.columns:
         return None
     heights = np.array(matrix.rows)
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
         return None  # the file has a column or row of positions
     counted = any(0 <= n - heights.size < matrix.columns for _, n in header.stated)
-    goes_on = matrix.ragged or (counted and matrix.columns <= _MAX_OF_LINE)
-    if goes_on and header.columns is None:
+    wrapped = matrix.ragged or (counted and matrix.columns <= _MAX_OF_LINE)
+    if wrapped and header.columns is None:
         return None  # a profile whose heights continue on the next line
     whole = (heights == np.round(heights)) | np.isnan(heights)
     if header.gauge_step not in (None, header.height) and whole.all():
@@ -141,12 +141,12 @@ def read_matrix(
 def _remove_sentinels(heights: np.ndarray, header: MapHeader) -> str:
     """Replace sentinels by NaN, and return which they were."""
     stated = take_stated(heights, header.stated)
-    told = [
+    marks = [
         f"height: {Marked(number, count).words}, as the header states ('{shown(name, 30)}')"
         for name, number, count in stated
     ]
-    told += [f"height: {mark.words}" for mark in take_marks([heights.reshape(-1)])]
-    return "; ".join(told)
+    marks += [f"height: {mark.words}" for mark in take_marks([heights.reshape(-1)])]
+    return "; ".join(marks)
 
 
 def texts_of(content: bytes) -> list[str]:
@@ -264,9 +264,9 @@ def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
         write = "write it above the numbers, as 'Pixel size: 0.5 um' and 'Height unit: um'"
         along = not (header.dx and header.dy)
         if along and not header.without_unit:  # names that state only the unit
-            raise NotSaidError(what, where=path, cure=write)
-        cure = unsaid(path, along=along, up=header.height is None)
-        raise NotSaidError(what, where=path, cure=cures.either(write, cure))
+            raise MissingUnitError(what, where=path, cure=write)
+        cure = unit_remedy(path, along=along, up=header.height is None)
+        raise MissingUnitError(what, where=path, cure=cures.either(write, cure))
     if not matrix.alone:
         raise ReadError(
             f"{path}: the file contains several matrices of numbers; leave only the heights"

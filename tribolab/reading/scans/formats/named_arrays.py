@@ -23,7 +23,7 @@ _MAX_TEXT = 500  # most characters of a text
 _MAX_ARRAYS = 200  # most arrays of a file
 
 
-class HeldArray(NamedTuple):
+class NamedArray(NamedTuple):
     """Array of numbers with its attributes in the file."""
 
     name: str
@@ -31,10 +31,10 @@ class HeldArray(NamedTuple):
     attrs: Json
 
 
-class HeldArrays(NamedTuple):
+class NamedArrays(NamedTuple):
     """Arrays, and texts by name."""
 
-    arrays: list[HeldArray]
+    arrays: list[NamedArray]
     texts: dict[str, str]
 
 
@@ -54,7 +54,7 @@ def has_arrays(path: Path, head: bytes) -> bool:
     return head.startswith(marks) or (head.startswith(b"PK\x03\x04") and is_npz(path))
 
 
-def read_arrays(path: Path) -> HeldArrays:
+def read_arrays(path: Path) -> NamedArrays:
     """Read all arrays of numbers of a file, and its texts.
 
     Raises
@@ -80,95 +80,95 @@ def read_arrays(path: Path) -> HeldArrays:
 
 
 @isolated()
-def _of_numpy(path: Path) -> HeldArrays:
+def _of_numpy(path: Path) -> NamedArrays:
     with path.open("rb") as file:
         alone = file.read(len(NPY)) == NPY
-    held = HeldArrays([], {})
+    stored = NamedArrays([], {})
     loaded = np.load(path, allow_pickle=False)
     if alone:
-        _take(held, path.stem, loaded, {})
-        return held
+        _take(stored, path.stem, loaded, {})
+        return stored
     with loaded as archive:
         for name in archive.files[:_MAX_ARRAYS]:
             try:
-                _take(held, name, archive[name], {})
+                _take(stored, name, archive[name], {})
             except ValueError:  # Python objects, which contain no measurement
                 continue
-    return held
+    return stored
 
 
-def _of_mat(path: Path) -> HeldArrays:
+def _of_mat(path: Path) -> NamedArrays:
     variables = read_variables(path)
-    held = HeldArrays([], {v.name: v.texts[0][:_MAX_TEXT] for v in variables if v.texts})
+    stored = NamedArrays([], {v.name: v.texts[0][:_MAX_TEXT] for v in variables if v.texts})
     for variable in variables:
         if variable.numbers is not None:
             numbers = variable.numbers
-            _take(held, variable.name, numbers.ravel() if 1 in numbers.shape else numbers, {})
-    return held
+            _take(stored, variable.name, numbers.ravel() if 1 in numbers.shape else numbers, {})
+    return stored
 
 
 @isolated("scipy.io")
-def _of_netcdf(path: Path) -> HeldArrays:
+def _of_netcdf(path: Path) -> NamedArrays:
     # imported late: SciPy loads slowly
     from scipy.io import netcdf_file
 
-    held = HeldArrays([], {})
+    stored = NamedArrays([], {})
     with netcdf_file(path, "r", mmap=False, maskandscale=False) as file:
-        _add_attributes(held, "", {k: plain(v) for k, v in vars(file)["_attributes"].items()})
+        _add_attributes(stored, "", {k: plain(v) for k, v in vars(file)["_attributes"].items()})
         for name, variable in file.variables.items():
             attrs = {k: plain(v) for k, v in vars(variable)["_attributes"].items()}
-            _take(held, name, np.array(variable.data), attrs)
-    return held
+            _take(stored, name, np.array(variable.data), attrs)
+    return stored
 
 
 @isolated("h5py")
-def _of_hdf5(path: Path) -> HeldArrays:
+def _of_hdf5(path: Path) -> NamedArrays:
     # imported late: h5py loads slowly
     import h5py
 
-    held = HeldArrays([], {})
+    stored = NamedArrays([], {})
 
     def visit(name: str, item: object) -> None:
         attrs = {str(k): plain(v) for k, v in getattr(item, "attrs", {}).items()}
         if not isinstance(item, h5py.Dataset):
-            _add_attributes(held, name, attrs)
+            _add_attributes(stored, name, attrs)
             return
-        if item.shape is None or len(held.arrays) >= _MAX_ARRAYS or item.dtype.names:
+        if item.shape is None or len(stored.arrays) >= _MAX_ARRAYS or item.dtype.names:
             return
         if attrs.get("MATLAB_class") == "char":
-            held.texts[name] = "".join(map(chr, np.ravel(item[()])[:_MAX_TEXT].tolist()))
+            stored.texts[name] = "".join(map(chr, np.ravel(item[()])[:_MAX_TEXT].tolist()))
         elif item.dtype.kind in "OSU":
             if item.size == 1:
-                held.texts[name] = str(plain(item[()]))[:_MAX_TEXT]
+                stored.texts[name] = str(plain(item[()]))[:_MAX_TEXT]
         else:
             values = np.asarray(item[()])
             if "MATLAB_class" in attrs:  # columns in MATLAB are rows in HDF5
                 values = values.T
                 values = values.ravel() if values.ndim == 2 and 1 in values.shape else values
-            _take(held, name, values, attrs)
+            _take(stored, name, values, attrs)
 
     with h5py.File(path, "r") as file:
         visit("", file)
         file.visititems(visit)
-    return held
+    return stored
 
 
-def _take(held: HeldArrays, name: str, values: np.ndarray, attrs: Json) -> None:
+def _take(stored: NamedArrays, name: str, values: np.ndarray, attrs: Json) -> None:
     if values.dtype.kind in "SU" and values.size == 1:
-        held.texts[name] = str(plain(values))[:_MAX_TEXT]
+        stored.texts[name] = str(plain(values))[:_MAX_TEXT]
     elif values.dtype.kind in "fiub" and values.size:
         own = np.squeeze(values) if values.ndim > 2 or values.size == 1 else values
-        held.arrays.append(HeldArray(name, own, attrs))
+        stored.arrays.append(NamedArray(name, own, attrs))
     for key, value in attrs.items():
         if isinstance(value, str):
-            held.texts[f"{name}.{key}"] = value
+            stored.texts[f"{name}.{key}"] = value
 
 
-def _add_attributes(held: HeldArrays, name: str, attrs: Json) -> None:
+def _add_attributes(stored: NamedArrays, name: str, attrs: Json) -> None:
     """Store the attributes of a group like its members."""
     for key, value in attrs.items():
         full = f"{name}/{key}" if name else key
         if isinstance(value, str):
-            held.texts[full] = value[:_MAX_TEXT]
+            stored.texts[full] = value[:_MAX_TEXT]
         elif isinstance(value, int | float):
-            held.arrays.append(HeldArray(full, np.asarray(value, dtype=float), {}))
+            stored.arrays.append(NamedArray(full, np.asarray(value, dtype=float), {}))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from tribolab.core.errors import Cure
 from tribolab.units.spellings import MICRO, unit_of_length
 
-_SAID = re.compile(
+_UNIT_IN_NAME = re.compile(
     r"(?i)(?<![^\W_])(?P<what>xyz|xy|x|y|z|heights?|h(?:ö|oe)hen?)[-_ =]?(?:in[-_ ])?"
     rf"(?P<unit>[npu{MICRO}]m|mm|cm|microns?|(?<=in[-_ ])m)(?![^\W_])"
 )
@@ -29,8 +29,8 @@ def units_in_name(path: Path) -> NamedUnits:
     (NamedUnits(x='mm', height='um'), NamedUnits(x='mm', height=None))
     """
     along, up = set(), set()
-    for said in _SAID.finditer(path.stem):
-        what, unit = said["what"].lower(), unit_of_length(said["unit"])
+    for match in _UNIT_IN_NAME.finditer(path.stem):
+        what, unit = match["what"].lower(), unit_of_length(match["unit"])
         if "x" in what or "y" in what:
             along.add(unit)
         if "z" in what or what.startswith("h"):
@@ -39,11 +39,11 @@ def units_in_name(path: Path) -> NamedUnits:
     return NamedUnits(*one)
 
 
-def unsaid(path: Path, *, along: bool, up: bool) -> Cure:
+def unit_remedy(path: Path, *, along: bool, up: bool) -> Cure:
     """Return instructions for stating missing units of positions, heights, or both."""
     arguments = {"x_unit": "mm"} if along else {}
     arguments |= {"height_unit": "um"} if up else {}
-    said = " and ".join(f"{name}='{unit}'" for name, unit in arguments.items())
+    stated = " and ".join(f"{name}='{unit}'" for name, unit in arguments.items())
     name = f"{path.stem}{'_xy-mm' if along else ''}{'_z-um' if up else ''}{path.suffix}"
     rename = f"put it into the file's name: '{name}'"
-    return Cure(notebook=f"say {said}, or {rename}", terminal=rename, campaign=rename)
+    return Cure(notebook=f"say {stated}, or {rename}", terminal=rename, campaign=rename)

@@ -25,7 +25,7 @@ from tribolab.units.conversion import conversion, to_si
 _OF_PROGRAM = (LookupError, TypeError, AttributeError, AssertionError)  # no information on the file
 
 
-class NotSaidError(ReadError):
+class MissingUnitError(ReadError):
     """Raised if a scan lacks only information that can be stated."""
 
 
@@ -141,15 +141,15 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
         except Exception as error:  # unsuitable formats raise different errors
             refused = error
     if reader is None:
-        said = "" if isinstance(refused, _OF_PROGRAM) else f": {brief(refused)}"
-        told = f" ({formats[0]}{said})" if len(formats) == 1 else ""
+        reason = "" if isinstance(refused, _OF_PROGRAM) else f": {brief(refused)}"
+        tried = f" ({formats[0]}{reason})" if len(formats) == 1 else ""
         if not _is_text(path):
             raise ReadError(
-                f"{path}: neither text nor a format that SurfaceTopography reads{told}; "
+                f"{path}: neither text nor a format that SurfaceTopography reads{tried}; "
                 "export the profile as text (csv)"
             )
         raise ReadError(
-            f"neither a known dialect nor a format that SurfaceTopography reads{told}",
+            f"neither a known dialect nor a format that SurfaceTopography reads{tried}",
             where=path,
             cure=cures.unknown_instrument(path, cures.SURFACE),
         )
@@ -165,7 +165,7 @@ def _topography(
     given: Arguments = {}
     if channel.physical_sizes is None:
         if x_unit is None:
-            raise NotSaidError(
+            raise MissingUnitError(
                 f"the file does not say how large the scan is ({_name(reader)})",
                 where=path,
                 cure=cures.SIZE,
@@ -173,7 +173,7 @@ def _topography(
         given["physical_sizes"] = tuple(float(n) for n in np.atleast_1d(channel.nb_grid_pts))
     if channel.unit is None:
         if x_unit is None or height_unit is None:
-            raise NotSaidError(
+            raise MissingUnitError(
                 f"the file states no units ({_name(reader)})", where=path, cure=cures.MEND_UNITS
             )
         given["unit"] = x_unit

@@ -10,8 +10,8 @@ import xarray as xr
 
 from tribolab.core.errors import ReadError, brief
 from tribolab.reading.raw.missing_marks import measurable
-from tribolab.reading.scans.formats.named_units import unsaid
-from tribolab.reading.scans.formats.profilometers import NotSaidError
+from tribolab.reading.scans.formats.named_units import unit_remedy
+from tribolab.reading.scans.formats.profilometers import MissingUnitError
 from tribolab.units.conversion import conversion
 
 _TEXT, _SINGLE = b"DSAA", b"DSBB"
@@ -43,7 +43,7 @@ def read_surfer(
 
     Raises
     ------
-    NotSaidError
+    MissingUnitError
         If the units are not given.
     ReadError
         If it is damaged.
@@ -74,10 +74,10 @@ def read_surfer(
             for what, unit in (("its positions", x_unit), ("its heights", height_unit))
             if unit is None
         ]
-        raise NotSaidError(
+        raise MissingUnitError(
             f"a Surfer grid does not say {' and '.join(lacking)}",
             where=path,
-            cure=unsaid(path, along=x_unit is None, up=height_unit is None),
+            cure=unit_remedy(path, along=x_unit is None, up=height_unit is None),
         )
     heights[heights >= _BLANK] = np.nan
     along, up = conversion(x_unit, "m")[0], conversion(height_unit, "m")[0]

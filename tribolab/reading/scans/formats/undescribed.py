@@ -16,7 +16,7 @@ from tribolab.reading.scans.formats.labelled_map import read_labelled_map
 from tribolab.reading.scans.formats.matrix import read_matrix
 from tribolab.reading.scans.formats.named_arrays import has_arrays, is_npz
 from tribolab.reading.scans.formats.named_units import units_in_name
-from tribolab.reading.scans.formats.profilometers import NotSaidError, read_foreign
+from tribolab.reading.scans.formats.profilometers import MissingUnitError, read_foreign
 from tribolab.reading.scans.formats.sdf import as_standard, is_sdf_draft
 from tribolab.reading.scans.formats.sur import is_sur, plain_sur
 from tribolab.reading.scans.formats.surfer import is_surfer, read_surfer
@@ -63,14 +63,14 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     """
     try:
         return _read(path, x_unit, height_unit)
-    except NotSaidError:
+    except MissingUnitError:
         named = units_in_name(path)
         if not ((named.x and x_unit is None) or (named.height and height_unit is None)):
             raise
         scan = _read(path, x_unit or named.x, height_unit or named.height)
-        told = [f"x in {named.x}"] if named.x and x_unit is None else []
-        told += [f"heights in {named.height}"] if named.height and height_unit is None else []
-        return scan.assign_attrs(units_by_file_name=", ".join(told))
+        units = [f"x in {named.x}"] if named.x and x_unit is None else []
+        units += [f"heights in {named.height}"] if named.height and height_unit is None else []
+        return scan.assign_attrs(units_by_file_name=", ".join(units))
 
 
 def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
@@ -119,10 +119,10 @@ def _read_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Da
     """Read a text map with our own readers, else use SurfaceTopography."""
     try:
         scan = read_matrix(path, x_unit, height_unit)
-    except NotSaidError as lacking:
+    except MissingUnitError as lacking:
         try:
             return read_foreign(path, x_unit, height_unit)
-        except NotSaidError as error:
+        except MissingUnitError as error:
             if x_unit is None:  # the error is that of our own reader
                 raise lacking from error
             raise

@@ -28,7 +28,7 @@ _MAIN = "main.xml"
 _ROOT = b"ISO5436_2"
 _TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 _MAX_POINTS = 1 << 31  # most points
-_NOT_SAID = {"", "unknown", "not available", "n/a", "none"}
+_UNKNOWN = {"", "unknown", "not available", "n/a", "none"}
 _FIELDS = {
     "recorded_at": "Record2/Date",
     "instrument_vendor": "Record2/Instrument/Manufacturer",
@@ -288,6 +288,6 @@ def _valid(mask: bytes, number: int) -> np.ndarray:
 def _attributes(root: ElementTree.Element) -> dict[str, str]:
     attrs = {"instrument": "x3p"}
     for name, place in _FIELDS.items():
-        if (text := _text(root, place)).lower() not in _NOT_SAID:
+        if (text := _text(root, place)).lower() not in _UNKNOWN:
             attrs[name] = shown(text, 100)
     return attrs

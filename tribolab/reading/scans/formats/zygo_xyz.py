@@ -10,7 +10,7 @@ import xarray as xr
 from tribolab.core.errors import ReadError, brief
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable
-from tribolab.reading.scans.formats.profilometers import NotSaidError
+from tribolab.reading.scans.formats.profilometers import MissingUnitError
 from tribolab.units.conversion import conversion
 
 _BEGIN = b"Zygo XYZ Data File"
@@ -41,7 +41,7 @@ def read_zygo_xyz(path: Path, x_unit: str | None = None) -> xr.Dataset:
 
     Raises
     ------
-    NotSaidError
+    MissingUnitError
         If the size of a pixel is not stated.
     ReadError
         If it is damaged.
@@ -63,7 +63,7 @@ def read_zygo_xyz(path: Path, x_unit: str | None = None) -> xr.Dataset:
         )
     if not pixel > 0 and x_unit is None:
         what = "it does not say how large a pixel is: its camera was not calibrated"
-        raise NotSaidError(what, where=path, cure=cures.SIZE)
+        raise MissingUnitError(what, where=path, cure=cures.SIZE)
     pixel = pixel if pixel > 0 or x_unit is None else conversion(x_unit, "m")[0]
     x, y = (points[:, axis] - points[:, axis].min() for axis in (0, 1))
     grid = np.full((rows, columns), np.nan)

@@ -9,7 +9,7 @@ import itertools
 import re
 
 from tribolab.core.errors import shown
-from tribolab.reading.lexicon.lexicon import alternatives, normalise_label, part_pattern, says
+from tribolab.reading.lexicon.lexicon import alternatives, mentions, normalise_label, part_pattern
 from tribolab.reading.numbers import numbers_in
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.units.spellings import MICRO
@@ -61,4 +61,4 @@ def states_raw_zero(line: str) -> bool:
     raw = any(n.value and _RAW.fullmatch(n.unit) for n in numbers_in(line))
     if not raw or not part_pattern("zero").search(normalise_label(line)):
         return False
-    return not (says("zero_taken_off", line) or says("zero_is_taken_off", line))
+    return not (mentions("zero_taken_off", line) or mentions("zero_is_taken_off", line))

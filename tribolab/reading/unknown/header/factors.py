@@ -16,9 +16,9 @@ from tribolab.reading.interpret.phrases import (
 )
 from tribolab.reading.lexicon.lexicon import (
     key_pattern,
+    mentions,
     plain_text,
     plain_words,
-    says,
     text_pattern,
 )
 from tribolab.reading.numbers import Number, numbers_in
@@ -65,8 +65,10 @@ def unapplied_height_factors(
     for line in layout.text_above(bare=True):
         text = line[:_MAX_LINE].strip()
         single = single_number(text)
-        factor = single and not single[2] and says("height_factor", single[0]) and single[1] != 1
-        step = whole and says("step_of_gauge", text) and not _states_one(text)
+        factor = (
+            single and not single[2] and mentions("height_factor", single[0]) and single[1] != 1
+        )
+        step = whole and mentions("step_of_gauge", text) and not _states_one(text)
         counted = states_calibration(text)
         if factor or ((step or counted) and not scaled):
             said.append(f"heights are read as they stand, not times '{shown(text, 40)}'")
@@ -98,22 +100,22 @@ def _unapplied(line: str) -> str:
     as_they_stand = f"signals are read as they stand, not times '{shown(line, 40)}'"
     for ratio in ratios_in(line):
         key = line[: ratio.start]
-        named = ratio.sign == ":" and (says("factor", key) or says("transmission", key))
+        named = ratio.sign == ":" and (mentions("factor", key) or mentions("transmission", key))
         if named and any(key_pattern("load").search(s.key) for s in phrases(line[ratio.end :])):
             return ""  # what the lever makes of a weight is said behind it
         if named and ratio.one != ratio.other:
             return as_they_stand
     multiplies = any(_multiplies(line, number) and number.value != 1 for number in numbers)
-    if multiplies or (says("signal", line) and says("scaled_in_words", line)):
+    if multiplies or (mentions("signal", line) and mentions("scaled_in_words", line)):
         return f"signals are read as they stand, and not as the file says: '{shown(line, 60)}'"
     if states_raw_zero(line):
         return f"signals are read as they stand, without '{shown(line, 40)}'"
     single = single_number(line)
     if single is None or single[2] or single[1] == 1:
         return ""
-    if says("factor", single[0]):
+    if mentions("factor", single[0]):
         return as_they_stand
-    if says("gear", single[0]):
+    if mentions("gear", single[0]):
         return f"speeds are read as they stand, not divided by '{shown(line, 40)}'"
     return ""
 
@@ -127,15 +129,15 @@ def _counts_contacts(line: str, number: Number) -> bool:
     if bodies.match(behind.lstrip()):
         return True
     last = not behind.strip(" ;")
-    return last and bool(says("contacts", before) or bodies.fullmatch(before.strip(" ;") + " "))
+    return last and bool(mentions("contacts", before) or bodies.fullmatch(before.strip(" ;") + " "))
 
 
 def _multiplies(line: str, number: Number) -> bool:
     """Whether a line states a number to multiply or divide by."""
     before = line[: number.start].rstrip().rpartition(" ")
     if before[2] in ("x", "X", "×", "*"):  # "Friction force x 1.25", not "512 x 512"
-        return says("signal", before[0]) and not any(map(str.isdigit, before[0]))
+        return mentions("signal", before[0]) and not any(map(str.isdigit, before[0]))
     if before[2].lower() not in plain_words("times_by"):
         return False
     words = before[0].rpartition(".")[2] if not any(map(str.isdigit, before[0])) else ""
-    return says("multiply", words) or says("multiply", line[number.stop :][:30])
+    return mentions("multiply", words) or mentions("multiply", line[number.stop :][:30])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
-from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, says
+from tribolab.reading.lexicon.lexicon import key_pattern, mentions, normalise_label
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
@@ -17,7 +17,7 @@ _MAX_LINE = 200  # characters of a line that are looked at
 def slides_on_rim(layout: Layout) -> bool:
     """Whether a file states that the track is the outside of the rotating part (block on ring)."""
     texts = (layout.file.path.stem, *layout.text_above())
-    return any(says("slides_on_rim", text[:_MAX_LINE]) for text in texts)
+    return any(mentions("slides_on_rim", text[:_MAX_LINE]) for text in texts)
 
 
 def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:

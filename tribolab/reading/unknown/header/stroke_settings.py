@@ -12,7 +12,7 @@ from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import is_stroke_frequency, is_stroke_length, split_unit
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import alternatives, role_of, says
+from tribolab.reading.lexicon.lexicon import alternatives, mentions, role_of
 from tribolab.reading.numbers import numbers_in
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.model import DraftColumn, Understood
@@ -119,7 +119,7 @@ def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str
     if stroke is not None and _EITHER_WAY.search(stroke.text):
         stroke = stroke._replace(scale=2.0)
     if stroke is None and (half := _only(values, "half_stroke", "m")) is not None:
-        whole = says("end_to_end", half.text)
+        whole = mentions("end_to_end", half.text)
         stroke = half if whole else half._replace(scale=2.0)
         if not whole and "half" not in half.name and not _EITHER_WAY.search(half.text):
             guess = f"'{half.text}' is half of a stroke"

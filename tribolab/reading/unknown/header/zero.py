@@ -10,7 +10,7 @@ from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.phrases import phrases
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import part_pattern, says
+from tribolab.reading.lexicon.lexicon import mentions, part_pattern
 from tribolab.reading.numbers import decimal
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.header.settings import numeric_settings
@@ -48,7 +48,7 @@ def zero_in_doubt(
     zero = _stated(values, unit)
     if zero is None or said or _is_still_in(layout, zero):
         return None
-    taken_off = says("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
+    taken_off = mentions("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
     return None if taken_off or _another_line_says("zero_is_taken_off", layout, zero) else zero
 
 
@@ -67,7 +67,7 @@ def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[
     return [
         f"'{zero.text}' was taken off the load"
         for zero in zeros
-        if not says("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
+        if not mentions("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
         and not _another_line_says("zero_is_taken_off", layout, zero)
     ]
 
@@ -89,14 +89,14 @@ def _says_unloaded_start(line: str) -> bool:
     >>> [_says_unloaded_start(line) for line in lines]
     [True, True, True, False]
     """
-    begins = says("at_start", line) or _STEP_ZERO.search(line)
-    if begins and says("zero_word", line):
+    begins = mentions("at_start", line) or _STEP_ZERO.search(line)
+    if begins and mentions("zero_word", line):
         return True
-    unloaded = says("without_contact", line.replace("load cell", "loadcell"))
+    unloaded = mentions("without_contact", line.replace("load cell", "loadcell"))
     unloaded = unloaded or any(
         said.unit == "N" and not decimal(said.number) for said in phrases(line)
     )
-    return bool(unloaded and (begins or says("on_return", line) or _ROW.match(line)))
+    return bool(unloaded and (begins or mentions("on_return", line) or _ROW.match(line)))
 
 
 def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
@@ -106,13 +106,13 @@ def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
-    own = zero is not None and says("zero_not_taken_off", zero.text)
+    own = zero is not None and mentions("zero_not_taken_off", zero.text)
     return own or _another_line_says("zero_not_taken_off", layout, zero)
 
 
 def _another_line_says(name: str, layout: Layout, zero: Amount | None) -> bool:
     lines = (line for line in layout.text_above() if zero is None or line.strip() != zero.text)
-    return any(says(name, line[:_MAX_LINE]) for line in lines)
+    return any(mentions(name, line[:_MAX_LINE]) for line in lines)
 
 
 def _stated(values: Sequence[Amount], unit: str) -> Amount | None:

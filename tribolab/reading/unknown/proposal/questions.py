@@ -214,9 +214,9 @@ class GuessedError(ReadError):
         self.understood = tuple(understood)
         self.options = tuple(options)
 
-    def told(self, audience: str) -> str:
+    def message_for(self, audience: str) -> str:
         """Return the message for an audience."""
-        cure = self.cure if isinstance(self.cure, str) else self.cure.told(audience)
+        cure = self.cure if isinstance(self.cure, str) else self.cure.message_for(audience)
         unclear = [f"Unclear: {question.line}" for question in self.asked]
         missing = [f"Missing: {lack}" for lack in self.lacks]
         told = f"Understood: {', '.join(self.understood) or 'nothing yet'}"
