@@ -1,4 +1,4 @@
-"""Run every benchmark and write docs/benchmarks.md: machine, versions, and what each one printed.
+"""Run the benchmarks and write docs/benchmarks.md: machine, versions, and a table of ratios.
 
     PYTHONPATH=$PWD python tests/benchmarks/all.py [--long] [names]
 
@@ -13,7 +13,6 @@ import os
 import platform
 import subprocess
 import sys
-import time
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -24,19 +23,16 @@ LONG = {"bench_big_run", "bench_one_run", "bench_run_out", "bench_scale", "bench
 LIBRARIES = ("numpy", "scipy", "pandas", "xarray", "polars", "SurfaceTopography", "matplotlib")
 
 
-def benchmark(script: Path) -> tuple[str, str, float]:
-    """Return title and output of a benchmark, and the seconds it took."""
-    title = script.read_text("utf-8").split('"""')[1].split("\n")[0].rstrip(".")
+def benchmark(script: Path) -> str:
+    """Return the output of a benchmark; if it failed, its last words."""
     one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(PROJECT)}
-    began = time.perf_counter()
     done = subprocess.run(
         [sys.executable, script], capture_output=True, text=True, env=os.environ | one_thread
     )
-    text = done.stdout.strip()
-    if done.returncode:
-        last = done.stderr.strip().splitlines()[-1:] or [""]
-        text += f"\nexit code {done.returncode} {last[0]}"
-    return title, text.strip(), time.perf_counter() - began
+    if not done.returncode:
+        return done.stdout
+    last = done.stderr.strip().splitlines()[-1:] or [""]
+    return f"{done.stdout}| {script.stem} | exit code {done.returncode} | {last[0]} | | | |\n"
 
 
 def versions() -> str:
@@ -71,15 +67,16 @@ def main() -> None:
         scripts = [script for script in scripts if script.stem not in LONG]
     parts = [
         "# Benchmarks\n",
-        "Written by `python tests/benchmarks/all.py`. Ratios compare tribolab with the named peer "
-        "in the same process; times of other machines differ.\n",
+        "Written by `python tests/benchmarks/all.py`. Each benchmark alternates between tribolab "
+        "and its peer in one call; times of other machines differ, ratios hardly.\n",
         f"{processor()}; Python {platform.python_version()}; {versions()}\n",
+        "| job | tribolab | peer | peer's | ratio | goal |\n|---|---|---|---|---|---|",
     ]
     for script in scripts:
-        title, text, seconds = benchmark(script)
-        print(f"{script.stem} ({seconds:.0f} s)\n{text}\n", flush=True)
-        parts.append(f"## {title}\n`tests/benchmarks/{script.name}`\n\n```text\n{text}\n```\n")
-    PAGE.write_text("\n".join(parts), encoding="utf-8")
+        text = benchmark(script)
+        print(f"{script.stem}\n{text}", flush=True)
+        parts += [line for line in text.splitlines() if line.startswith("|")]
+    PAGE.write_text("\n".join(parts) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -8,12 +8,11 @@ Processor time, so that a busy machine does not spoil it; best of three, after o
 from __future__ import annotations
 
 import io
-import time
-from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from side_by_side import least_times, row
 
 from tribolab.qc.run.checks import check_run
 from tribolab.units.stamping import stamp
@@ -38,25 +37,16 @@ def made() -> xr.Dataset:
     return stamp(xr.Dataset(data, {"time": moment}), source="made")
 
 
-def best(work: Callable[[], object], times: int = 3) -> float:
-    """Least processor time of some tries [s]."""
-    work()
-    spent = []
-    for _ in range(times):
-        start = time.process_time()
-        work()
-        spent.append(time.process_time() - start)
-    return min(spent)
-
-
 def main() -> None:
     """Print both times and their ratio."""
     run = made()
     text = run.to_dataframe().round(6).to_csv()
-    checks = best(lambda: check_run(run, normal_force=31.0))
-    reading = best(lambda: pd.read_csv(io.StringIO(text)))
-    print(f"all checks on {ROWS} rows: {checks:.2f} s")
-    print(f"pandas.read_csv of the same rows: {reading:.2f} s; ratio {checks / reading:.2f}")
+    times = least_times(
+        3,
+        checks=lambda: check_run(run, normal_force=31.0),
+        reading=lambda: pd.read_csv(io.StringIO(text)),
+    )
+    row(f"all checks of {ROWS:.0e} rows", times["checks"], "pandas", times["reading"], 1)
 
 
 if __name__ == "__main__":

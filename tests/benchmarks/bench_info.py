@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from side_by_side import row
 
 _INFO = [sys.executable, "-c", "from tribolab.cli import main; main()", "info"]
 _CHECK = [*_INFO[:-1], "check"]
@@ -127,9 +128,11 @@ def main() -> None:
         spent = measure(commands, options.repeats)
     peer = "pandas"
     for name, (cpu, memory) in spent.items():
-        peer = name if "pandas" in name else peer
-        ratio = cpu / spent[peer].cpu
-        print(f"{name:18} {cpu:6.2f} CPU s {memory:6.0f} MB   {ratio:5.2f} of {peer}")
+        if "pandas" in name:
+            peer = name
+            continue
+        row(name, cpu, peer, spent[peer].cpu, 1)
+        row(f"{name}, memory", memory, peer, spent[peer].memory, 1.3, "MB")
 
 
 if __name__ == "__main__":

@@ -2,19 +2,19 @@
 
 Run with ``python tests/benchmarks/bench_psd.py [scans] [threads]``. The yardstick is
 ``scipy.fft.rfft`` of the raw array at the length that the spectra use, and SurfaceTopography's own
-averaged spectrum on a few of the scans. Best of several runs, taken in turn.
+averaged spectrum on a few of the scans. The least processor time of
+alternating runs counts.
 """
 
 from __future__ import annotations
 
 import sys
-import time
 import warnings
-from collections.abc import Callable
 
 import numpy as np
 import scipy.fft
 import xarray as xr
+from side_by_side import least_times, row
 
 from tribolab.studies import xu2026
 from tribolab.surface.spectra.fourier import fast_length
@@ -22,17 +22,6 @@ from tribolab.surface.spectra.psd import psd_1d, psd_2d
 from tribolab.surface.synthesis import synthesise_profiles
 
 POINTS, PITCH, ROUNDS, FEW = 50_001, 0.5e-6, 3, 20
-
-
-def best_of(rounds: int, **tasks: Callable[[], object]) -> dict[str, float]:
-    """Shortest time [s] of each task; they take turns, so that all see the same machine."""
-    times = {name: [] for name in tasks}
-    for _ in range(rounds):
-        for name, task in tasks.items():
-            start = time.perf_counter()
-            task()
-            times[name].append(time.perf_counter() - start)
-    return {name: min(values) for name, values in times.items()}
 
 
 def main(number: int = 1000, threads: int = 1) -> None:
@@ -56,28 +45,19 @@ def main(number: int = 1000, threads: int = 1) -> None:
         with scipy.fft.set_workers(threads):
             scipy.fft.rfft(height, n=length, axis=-1)
 
-    def one() -> None:
-        psd_1d(scans, form="none", workers=threads)
-
     def both() -> None:
         psd_2d(psd_1d(scans, form="none", workers=threads))
 
     def other() -> None:
         InMemorySurfaceContainer(few).power_spectrum(unit="m")
 
-    times = best_of(ROUNDS, bare=bare, one=one, both=both)
+    times = least_times(ROUNDS, bare=bare, both=both)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        times |= best_of(2, other=other)
-    circle = best_of(1, circle=lambda: psd_1d(scans.isel(scan=slice(0, 100)), workers=threads))
-    print(f"{number} scans of {POINTS} points, FFT length {length}, {threads} thread(s)")
-    print(f"  scipy.fft.rfft of the raw array       : {times['bare']:.3f} s")
-    print(f"  psd_1d                                : {times['one']:.3f} s")
-    print(f"  psd_1d and psd_2d                     : {times['both']:.3f} s")
-    print(f"  1D and 2D spectra / bare FFT          : {times['both'] / times['bare']:.2f}")
+        times |= least_times(2, other=other)
+    row(f"PSD 1D and 2D of {number} scans", times["both"], "rfft of all", times["bare"], 2)
     ours, theirs = times["both"] / number, times["other"] / FEW
-    print(f"  a scan: tribolab / SurfaceTopography  : {ours / theirs:.4f}  ({theirs:.3f} s)")
-    print(f"  a scan with its circle removed first  : {circle['circle'] / 100 * 1e3:.2f} ms")
+    row("PSD 1D and 2D, a scan", ours, "SurfaceTopography", theirs, 1)
 
 
 if __name__ == "__main__":

@@ -41,8 +41,8 @@ def size(folder: Path) -> int:
 
 
 def line(what: str, measured: str, wanted: str) -> None:
-    """Print a row."""
-    print(f"{what:58} {measured:>26}   wanted {wanted}", flush=True)
+    """Print a row of docs/benchmarks.md."""
+    print(f"| {what} | {measured} | limit | | | {wanted} |", flush=True)
 
 
 def demo(folder: Path) -> None:

@@ -7,28 +7,16 @@ taken in turn; a ratio above 1 means that tribolab takes longer.
 from __future__ import annotations
 
 import tempfile
-import time
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from side_by_side import least_times, row
 
 from tribolab.reading.scan_files import read_scans
 
 POINTS, ROUNDS = 50_001, 30
-
-
-def best_of(rounds: int, **tasks: Callable[[], object]) -> dict[str, float]:
-    """Shortest time [s] of each task; they take turns, so that all see the same machine."""
-    times = {name: [] for name in tasks}
-    for _ in range(rounds + 1):  # the first round warms up
-        for name, task in tasks.items():
-            start = time.perf_counter()
-            task()
-            times[name].append(time.perf_counter() - start)
-    return {name: min(values[1:]) for name, values in times.items()}
 
 
 def write_scan(folder: Path) -> tuple[Path, Path]:
@@ -52,20 +40,18 @@ def main() -> None:
         from SurfaceTopography.IO import read_topography
     with tempfile.TemporaryDirectory() as name:
         scan, bare = write_scan(Path(name))
-        times = best_of(
+        times = least_times(
             ROUNDS,
             tribolab=lambda: read_scans(scan),
             named=lambda: read_scans(scan, instrument="surftest_csv"),
             pandas=lambda: pd.read_csv(scan, skiprows=4),
             pyarrow=lambda: pd.read_csv(scan, skiprows=4, engine="pyarrow"),
         )
-        times |= best_of(3, topography=lambda: read_topography(str(bare), unit="um"))
-    ours = times["tribolab"]
-    print(f"one scan of {POINTS} points, {ours * 1e3:.2f} ms, SI dataset with checksum")
-    print(f"  with instrument= named             : {times['named'] * 1e3:.2f} ms")
-    print(f"  / pandas.read_csv                  : {ours / times['pandas']:.2f}")
-    print(f"  / pandas.read_csv(engine='pyarrow'): {ours / times['pyarrow']:.2f}")
-    print(f"  / SurfaceTopography (xyz)          : {ours / times['topography']:.2f}")
+        times |= least_times(3, topography=lambda: read_topography(str(bare), unit="um"))
+    for peer in ("pandas", "pyarrow", "topography"):
+        goal = {"pandas": 1.3, "pyarrow": 1.5, "topography": 1}[peer]
+        row(f"scan of {POINTS} points", times["tribolab"], peer, times[peer], goal)
+    row("scan, instrument named", times["named"], "pandas", times["pandas"], 1.3)
 
 
 if __name__ == "__main__":

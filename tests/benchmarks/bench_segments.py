@@ -15,10 +15,10 @@ The alternatives, on the same array in the same process, best of five:
 """
 
 import sys
-import time
 
 import numpy as np
 import xarray as xr
+from side_by_side import least_times, row
 
 from tribolab.friction.segments.find import find_segments
 
@@ -45,16 +45,6 @@ def record(samples: int, seed: int = 0) -> tuple[xr.Dataset, np.ndarray, np.ndar
     return run, np.arange(PLATEAUS) * stroke + rest + ramp, speeds
 
 
-def best(function, repeats: int = 5) -> float:
-    """Return the shortest of some durations [s]."""
-    taken = []
-    for _ in range(repeats):
-        begin = time.perf_counter()
-        function()
-        taken.append(time.perf_counter() - begin)
-    return min(taken)
-
-
 def main() -> None:
     """Print what was found, the durations and their ratios."""
     samples = int(float(sys.argv[1])) if len(sys.argv) > 1 else 10_000_000
@@ -73,13 +63,14 @@ def main() -> None:
     print(f"{velocity.size} samples, {PLATEAUS} plateaus: found {signed.size}, all right: {right}")
     stroke = samples // PLATEAUS / 1e3
     print(f"largest error of a start: {np.max(np.abs(late)):.3f} s of {stroke} s")
-    ours = best(lambda: find_segments(run))
-    exact = best(lambda: np.flatnonzero(np.diff(velocity)))
-    label = best(labels)
-    print(f"find_segments          {ours * 1e3:8.1f} ms")
-    print(f"(a) run-length, exact  {exact * 1e3:8.1f} ms   ratio {ours / exact:.2f}")
-    print(f"(b) run-length, labels {label * 1e3:8.1f} ms   ratio {ours / label:.2f}")
-    print(f"borders that (b) finds: {labels().size}")
+    times = least_times(
+        5,
+        ours=lambda: find_segments(run),
+        exact=lambda: np.flatnonzero(np.diff(velocity)),
+        labels=labels,
+    )
+    row(f"segments of {samples:.0e} samples", times["ours"], "labels", times["labels"], 1)
+    row(f"segments of {samples:.0e} samples", times["ours"], "exact steps", times["exact"], 4)
 
 
 if __name__ == "__main__":

@@ -9,12 +9,13 @@ The FFT transforms the trace once in stretches of 8192 samples, with no window a
 from __future__ import annotations
 
 import argparse
-import time
 import tracemalloc
 
 import numpy as np
 import xarray as xr
 from scipy import fft
+from scipy.signal import welch
+from side_by_side import least_times, row
 
 from tribolab.friction.oscillation.slip_segments import stick_slip
 
@@ -44,30 +45,25 @@ def batched(values: np.ndarray) -> np.ndarray:
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--samples", type=int, default=10_000_000)
+    parser.add_argument("--samples", type=int, default=1_000_000)
     samples = parser.parse_args().samples
     for period in (40.0, 2500.0):
         run, segments = make(samples, period)
         values = run["friction_coefficient"].values
-        times = {"stick_slip": [], "FFT": []}
-        for _ in range(9):
-            for name, work in (
-                ("FFT", lambda values=values: batched(values)),
-                ("stick_slip", lambda run=run, segments=segments: stick_slip(run, segments)),
-            ):
-                began = time.perf_counter()
-                found = work()
-                times[name].append(time.perf_counter() - began)
-        ours, other = min(times["stick_slip"]), min(times["FFT"])
+        times = least_times(
+            9,
+            ours=lambda run=run, segments=segments: stick_slip(run, segments),
+            batched=lambda values=values: batched(values),
+            welch=lambda values=values: welch(values, nperseg=_STRETCH),
+        )
+        job = f"stick-slip, {samples:.0e} samples, {period:g} in a period"
+        row(job, times["ours"], "welch", times["welch"], 1.2)
+        row(job, times["ours"], "batched rfft", times["batched"], 2.5)
         tracemalloc.start()
-        found = stick_slip(run, segments)
+        stick_slip(run, segments)
         peak = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
-        print(
-            f"{samples:.0e} samples, {period:g} in a period ({found['waveform'].item()}): "
-            f"{ours:.3f} s, {ours / other:.2f} times one batched FFT ({other:.3f} s); "
-            f"peak memory {peak / values.nbytes:.2f} times the trace"
-        )
+        row(f"{job}, memory", peak / 1e6, "the trace", values.nbytes / 1e6, 0.2, "MB")
 
 
 if __name__ == "__main__":

@@ -5,10 +5,9 @@ Run: ``python tests/benchmarks/bench_table_schema.py``; prints seconds and the r
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pandas as pd
+from side_by_side import least_times, row
 
 from tribolab.reading.netcdf.table_schema import load_schema, validate
 
@@ -26,16 +25,6 @@ def with_masks(table: pd.DataFrame) -> int:
     return count + int(table["time"].isna().sum() + table["time"].duplicated().sum())
 
 
-def best(function, table: pd.DataFrame) -> float:
-    """Shortest of five."""
-    times = []
-    for _ in range(5):
-        start = time.perf_counter()
-        function(table)
-        times.append(time.perf_counter() - start)
-    return min(times)
-
-
 def main() -> None:
     """Print the times for good data, and for data of which every third row is bad."""
     rng = np.random.default_rng(0)
@@ -45,8 +34,8 @@ def main() -> None:
         if name != "good":
             table.loc[::3, "normal_force"] = -1e9
         assert validate(table).total == with_masks(table)
-        ours, masks = best(validate, table), best(with_masks, table)
-        print(f"{name}: {ours:.4f} s, masks {masks:.4f} s, masks/ours {masks / ours:.1f}")
+        times = least_times(5, ours=lambda: validate(table), masks=lambda: with_masks(table))
+        row(f"table schema, {name}", times["ours"], "pandas masks", times["masks"], 1)
 
 
 if __name__ == "__main__":
