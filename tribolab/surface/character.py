@@ -8,6 +8,7 @@ import xarray as xr
 from tribolab.surface.gaps import bridge_gaps, gaps_in
 
 _MAX_POINTS = 8192  # of a profile; a dominant wave must be sampled by several points a period
+_BLOCK = 256  # rows of a map whose slopes are computed at a time
 _MAX_ROWS = 512  # of a map: the mean power of each line is then accurate to 6 %
 _PERIODS = 12  # fewer periods in a scan can arise by chance, which makes up to six
 _LOBE = 2  # lines on either side over which a Hann window spreads a wave
@@ -145,12 +146,14 @@ def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
 def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:
     """Return the ratio of rms slopes along and across the lay (..., y, x); 1 without a lay."""
     height = height.reshape(-1, *height.shape[-2:])
-    along_x = np.diff(height, axis=-1)[..., :-1, :] / step_x
-    along_y = np.diff(height, axis=-2)[..., :, :-1] / step_y
-    xx, xy, yy = (
-        float(np.einsum("syx,syx->", one, other)) / along_x.size
-        for one, other in ((along_x, along_x), (along_x, along_y), (along_y, along_y))
-    )
+    sums = np.zeros(3)
+    starts = range(0, height.shape[1] - 1, _BLOCK)
+    for rows in (one[first : first + _BLOCK + 1] for one in height for first in starts):
+        along_x = np.diff(rows[:-1], axis=1)
+        along_y = np.diff(rows[:, :-1], axis=0)
+        pairs = ((along_x, along_x), (along_x, along_y), (along_y, along_y))
+        sums += [np.vdot(first, second) for first, second in pairs]
+    xx, xy, yy = sums / (step_x**2, step_x * step_y, step_y**2)
     tensor = np.array([[xx, xy], [xy, yy]])
     least, most = np.linalg.eigvalsh(tensor)
     return float(np.sqrt(max(least, 0.0) / most)) if most > 0 else 1.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy.fft
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
@@ -23,19 +24,36 @@ from tribolab.surface.spectra.binning import correlation, log_bins, window
 from tribolab.units.stamping import stamp
 
 _MIN_POINTS_OF_SIDE = 16
+_BLOCK = 256  # rows windowed at a time
 
 
 def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return the mean power of windowed maps (scan, y, x) in a half plane, and mean square."""
+    """Return the mean power of windowed maps (scan, y, x) in a quadrant, and mean square."""
     rows, columns = maps.shape[-2:]
-    power, square = np.zeros((rows, columns // 2 + 1)), 0.0
-    for heights in maps:  # one transform at a time: maps are large
-        windowed = heights * window(columns)
-        windowed *= window(rows)[:, None]
-        square += float(np.vdot(windowed, windowed)) / maps.size
-        lines = np.fft.rfft2(windowed)
-        power += (lines.real**2 + lines.imag**2) / len(maps)
+    power, square = np.zeros((rows // 2 + 1, columns // 2 + 1)), 0.0
+    lines = np.empty((rows, columns // 2 + 1), complex)
+    for heights in maps:  # one transform at a time, windowed by blocks of rows: maps are large
+        for first in range(0, rows, _BLOCK):
+            block = slice(first, first + _BLOCK)
+            windowed = heights[block] * window(columns)
+            windowed *= window(rows)[block, None]
+            square += float(np.vdot(windowed, windowed)) / maps.size
+            lines[block] = scipy.fft.rfft(windowed)
+        lines = scipy.fft.fft(lines, axis=0, overwrite_x=True)
+        parts = lines.view(float).reshape(*lines.shape, 2)
+        upper, lower = parts[: len(power)], parts[: -((rows + 1) // 2) : -1]
+        power += np.einsum("yxc,yxc->yx", upper, upper) / len(maps)
+        power[1 : len(lower) + 1] += np.einsum("yxc,yxc->yx", lower, lower) / len(maps)
     return power, square
+
+
+def _multiplicity(count: int, size: int) -> np.ndarray:
+    """Return how many Fourier lines of an axis of `size` points each of `count` represents."""
+    number = np.full(count, 2.0)
+    number[0] = 1.0
+    if size % 2 == 0:
+        number[-1] = 1.0
+    return number
 
 
 def psd_2d_of_map(
@@ -93,15 +111,10 @@ def psd_2d_of_map(
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
     power, whole = _power(height)
     scale = steps[0] * steps[1] / (4 * np.pi**2 * size[0] * size[1])
-    ky, kx = (
-        2 * np.pi * np.fft.fftfreq(size[0], steps[0]),
-        2 * np.pi * np.fft.rfftfreq(size[1], steps[1]),
-    )
+    ky, kx = (2 * np.pi * np.fft.rfftfreq(n, d) for n, d in zip(size, steps, strict=True))
     q = np.hypot(ky[:, None], kx)
-    mirrored = np.full(kx.size, 2.0)  # half of the lines of the plane mirror the other half
-    mirrored[0] = 1.0
-    if size[1] % 2 == 0:
-        mirrored[-1] = 1.0
+    # the quadrant has the sums of +ky and -ky; +kx and -kx have equal power
+    along_y, along_x = (_multiplicity(k.size, n) for k, n in zip((ky, kx), size, strict=True))
     spacing = max(2 * np.pi / (n * d) for n, d in zip(size, steps, strict=True))
     waves = int(min(np.pi / d for d in steps) / spacing)
     if waves < MIN_WAVES_OF_MAP.value:
@@ -117,16 +130,16 @@ def psd_2d_of_map(
     annulus = np.digitize(q.ravel(), edges)  # 0 and the last are outside all annuli
 
     def sums(values: np.ndarray) -> np.ndarray:
-        return np.bincount(annulus, (values * mirrored).ravel(), bins.starts.size + 2)[1:-1]
+        return np.bincount(annulus, (values * along_x).ravel(), bins.starts.size + 2)[1:-1]
 
-    lines = sums(np.ones(q.shape))
+    lines = sums(np.broadcast_to(along_y[:, None], q.shape))
 
     def annuli(values: np.ndarray) -> np.ndarray:
         return sums(values) * (scale / lines)
 
     mean = annuli(power)
     q[0, 0] = 1.0  # not in any annulus
-    node = np.exp(sums(np.log(q)) / lines)
+    node = np.exp(sums(np.log(q) * along_y[:, None]) / lines)
     correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
     independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)
     known = np.arange(node.size) > 0  # form removal and the window affect the first annulus
@@ -142,8 +155,8 @@ def psd_2d_of_map(
         known &= node < max(lost, node[min(4, node.size - 1)])
     low, high = confidence_band(mean, independent)
     cell = (2 * np.pi) ** 2 / (size[0] * size[1] * steps[0] * steps[1])
-    power *= mirrored
-    along_x, along_y = (power @ kx**2).sum(), (ky**2 @ power).sum()
+    power *= along_x
+    slope_x, slope_y = (power @ kx**2).sum(), (ky**2 @ power).sum()
     data = xr.Dataset(
         {
             "psd_2d": ("wavenumber", mean[known]),
@@ -161,7 +174,7 @@ def psd_2d_of_map(
         "convention": "<h^2> = 2 pi int q C dq",
         "scans": len(height),
         "mean_square_height_m2": whole,
-        "anisotropy": float(np.sqrt(along_y / along_x)),
+        "anisotropy": float(np.sqrt(slope_y / slope_x)),
         "parseval_error": abs(float(power.sum() * scale * cell) / whole - 1),
     }
     if why := self_affinity_objection(scan):
