@@ -52,17 +52,18 @@ def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
     """
     if values.size < 5:
         return values, 0
-    left, here, right = values[:-2], values[1:-1], values[2:]
+    least = limits.MIN_SPIKE_OVER_NOISE.value * noise
+    far = np.abs(np.diff(values)) > least
+    spikes = 1 + np.flatnonzero(far[:-1] & far[1:])
+    left, here, right = (values[spikes + step] for step in (-1, 0, 1))
     middle = np.clip(here, np.minimum(left, right), np.maximum(left, right))
     # except for a spike the signal must be continuous: a drop is not a spike
     apart = np.abs(here - middle)
-    single = (apart > limits.MIN_SPIKE_OVER_NOISE.value * noise) & (
-        apart > 2 * np.abs(right - left)
-    )
+    single = (apart > least) & (apart > 2 * np.abs(right - left))
     if not single.any():
         return values, 0
     result = values.copy()
-    result[1:-1][single] = 0.5 * (left + right)[single]
+    result[spikes[single]] = 0.5 * (left + right)[single]
     return result, int(single.sum())
 
 

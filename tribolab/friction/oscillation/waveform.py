@@ -65,8 +65,9 @@ def describe_waveform(
     n = events.drop.size
     slope = values[lag:] - values[:-lag] if values.size > lag else np.zeros(0)
     slope = slope - slope.mean() if slope.size else slope
-    spread = float(np.sqrt(np.mean(slope**2))) if slope.size else 0.0
-    skewness = float(np.mean((slope / spread) ** 3)) if spread > 0 else np.nan
+    square = slope * slope
+    spread = float(np.sqrt(np.mean(square))) if slope.size else 0.0
+    skewness = float(square @ slope) / slope.size / spread**3 if spread > 0 else np.nan
     if n == 0:
         return WaveformFeatures(np.nan, 1.0, skewness, np.nan, np.nan, 0)
     longer, shorter = int((rise > fall).sum()), int((rise < fall).sum())

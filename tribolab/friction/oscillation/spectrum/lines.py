@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -55,6 +56,13 @@ def segment_lines(
     ]
 
 
+@functools.lru_cache(maxsize=4)  # the segments of a run are often equally long
+def _hann(size: int) -> np.ndarray:
+    window = np.hanning(size)
+    window.flags.writeable = False
+    return window
+
+
 def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return frequencies [Hz] and amplitudes of the sines in evenly sampled data (Hann window).
 
@@ -69,8 +77,8 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     interval = (time[n - 1] - time[0]) / (n - 1)
     place = np.arange(n) / (n - 1) - 0.5
     part = values[:n] - values[:n].mean()
-    part = part - 12 * place * (place @ part) / n  # a drift is not a line
-    window = np.hanning(n)
+    part -= 12 * place * (place @ part) / n  # a drift is not a line
+    window = _hann(n)
     amplitude = 2 * np.abs(np.fft.rfft(part * window)) / window.sum()
     return np.fft.rfftfreq(n, interval), amplitude
 

@@ -55,20 +55,24 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
     harmonics = []
     for true in sorted(base * k for base in (50.0, 60.0) for k in (1, 2, 3)):
         reach = limits.MAX_MAINS_DEVIATION.value * true / 50 + frequency[1]
-        near = np.flatnonzero(np.abs(frequency - true) <= reach)
-        around = np.abs(frequency - true) <= max(40 * frequency[1], 5 * reach)
-        if true > 0.45 * rate or near.size == 0 or around.sum() < 4 * near.size:
+        near = _bins(frequency, true, reach)
+        around = _bins(frequency, true, max(40 * frequency[1], 5 * reach))
+        size = near.stop - near.start
+        if true > 0.45 * rate or size == 0 or around.stop - around.start < 4 * size:
             continue
-        at = near[np.argmax(amplitude[near])]
+        at = near.start + int(np.argmax(amplitude[near]))
         usual = median(amplitude[around] ** 2) / np.log(2)
         off = abs(_peak_frequency(frequency, amplitude, at) - true)
         if off > limits.MAX_MAINS_DEVIATION.value * true / 50 + _PEAK_SHIFT_BINS * frequency[1]:
             continue  # in a short record a bin is wide: 57 Hz is not mains
-        if (
-            near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300))
-            < limits.MAINS_BY_CHANCE.value
-        ):
+        if size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < limits.MAINS_BY_CHANCE.value:
             harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
     # among hundreds of segments noise may resemble a harmonic: require its fundamental
     names = {line.name for line in harmonics}
     return tuple(line for line in harmonics if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)
+
+
+def _bins(frequency: np.ndarray, middle: float, reach: float) -> slice:
+    """Return the bins whose frequency is within a distance of another."""
+    low, high = np.searchsorted(frequency, middle - reach), middle + reach
+    return slice(int(low), int(np.searchsorted(frequency, high, side="right")))
