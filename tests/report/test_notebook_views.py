@@ -153,3 +153,13 @@ def test_units_stand_beside_the_variables_in_what_jupyter_shows_first(tmp_path):
     types = re.findall(r"<div class='xr-var-dtype'>(.*?)</div>", dataset)
     assert types == ["&lt;s&gt;, float64", "N, float64", "&lt;U1"]
     assert "&#x27;friction_force&#x27; [N]" in array or "'friction_force' [N]" in array
+
+
+def test_outcome_results_and_history_are_short_in_a_notebook(two_runs):
+    outcome = tl.run_campaign(two_runs, jobs=1)
+    assert outcome._repr_html_().startswith(f"<p><b>{outcome.folder}: 2 runs, ")
+    results = tl.read_results(outcome.folder)
+    shown = results._repr_html_()
+    assert f"{len(results)} tables</b>" in shown and ", sliding_speed_m_s, " in shown
+    told = tl.comparison.history([outcome.folder])._repr_html_()
+    assert re.match(r"<p><b>\d+ charts?</b></p><ul>", told)

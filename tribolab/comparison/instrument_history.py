@@ -20,6 +20,7 @@ from tribolab.comparison.watched import (
     observations_of,
 )
 from tribolab.core.errors import AnalysisError, ReadError, TribolabError
+from tribolab.core.html_list import html_list
 from tribolab.core.wording import many
 from tribolab.metrology.control_charts import (
     DEFAULT_RULES,
@@ -133,6 +134,15 @@ class History:
     def signalling(self) -> tuple[InstrumentHistory, ...]:
         """Charts in which a point signals."""
         return tuple(chart for chart in self.charts if chart.signals.size)
+
+    def _repr_html_(self) -> str:
+        """Return the charts in which a point signals, and the folders not read, as HTML."""
+        entries = [
+            (f"{c.instrument}, {c.quantity}", f"{many(c.signals.size, 'point')} signal")
+            for c in self.signalling
+        ]
+        entries += [("not read", reason) for reason in self.unread]
+        return html_list(many(len(self.charts), "chart"), entries)
 
     def table(self) -> pd.DataFrame:
         """Return the table of the points of all charts."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Hashable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -13,6 +12,7 @@ import xarray as xr
 
 from tribolab.arrays.conditions import ConditionLabels, Conditions, labels_along
 from tribolab.core.errors import AnalysisError, Cure
+from tribolab.core.html_list import html_list
 from tribolab.regime.model import Mode
 from tribolab.regime.verdict import SlidingMode, sliding_mode
 
@@ -27,10 +27,7 @@ class SlidingModes(Conditions[SlidingMode]):
         rows = [
             {**labels, "verdict": mode.verdict, "side": side, "text": text}
             for labels, mode in self
-            for side, text in (
-                *((piece.side, piece.text) for piece in mode.evidence),
-                *(("would decide", text) for text in mode.decide),
-            )
+            for side, text in mode.entries
         ]
         return pd.DataFrame(rows, columns=[*self.results.dims, "verdict", "side", "text"])
 
@@ -45,16 +42,9 @@ class SlidingModes(Conditions[SlidingMode]):
 
     def _repr_html_(self) -> str:
         """Return HTML of each verdict, with the evidence for and against it below."""
-        parts = []
-        for labels, mode in self:
-            rows = [(piece.side, piece.text) for piece in mode.evidence]
-            rows += [("would decide", text) for text in mode.decide]
-            lines = "".join(
-                f"<li><b>{html.escape(side)}</b> {html.escape(text)}</li>" for side, text in rows
-            )
-            head = f"<b>{html.escape(_words(labels))}</b>: {html.escape(mode.text)}"
-            parts.append(f"<p>{head}</p><ul>{lines}</ul>")
-        return "".join(parts)
+        return "".join(
+            html_list(f"{_words(labels)}: {mode.text}", mode.entries) for labels, mode in self
+        )
 
 
 def sliding_modes(

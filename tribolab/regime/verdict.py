@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from tribolab.core.html_list import html_list
 from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, one_curve
 from tribolab.friction.oscillation.waveform import NOT_CLEAR
 from tribolab.friction.oscillation.waveform import oscillating as oscillates
@@ -61,6 +62,16 @@ class SlidingMode:
     paragraph: str
     curve: xr.Dataset
     numbers: dict[str, float]
+
+    @property
+    def entries(self) -> list[tuple[str, str]]:
+        """Evidence, each with its side, and the measurements that would decide."""
+        pieces = [(piece.side, piece.text) for piece in self.evidence]
+        return [*pieces, *(("would decide", text) for text in self.decide)]
+
+    def _repr_html_(self) -> str:
+        """Return the verdict and its evidence as HTML."""
+        return html_list(self.text, self.entries)
 
 
 def sliding_mode(

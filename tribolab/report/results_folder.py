@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.core.errors import ReadError, brief, nearest, shown
+from tribolab.core.html_list import html_list
 from tribolab.core.untyped import Json
+from tribolab.core.wording import many
 from tribolab.report import tables
 
 if TYPE_CHECKING:
@@ -54,6 +56,14 @@ class Results(Mapping[str, "pd.DataFrame"]):
     def __len__(self) -> int:
         """Return the number of tables."""
         return len(self._files)
+
+    def _repr_html_(self) -> str:
+        """Return the names of the tables, with their columns, as HTML."""
+        columns = []
+        for name, path in self._files.items():
+            with path.open(encoding="utf-8") as lines:
+                columns.append((name, lines.readline().strip().replace(",", ", ")))
+        return html_list(f"{self.folder}: {many(len(self), 'table')}", columns)
 
     def data(self, name: str, group: str | None = None) -> xr.Dataset:
         """Return a group of a run, curve, surface or model, e.g. ``data("x_01", "friction")``.

@@ -6,6 +6,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab.core.html_list import html_list
+from tribolab.core.wording import many
+
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.store.catalogue import Catalogue, Store
@@ -80,6 +83,13 @@ class Outcome:
     def segments(self) -> int:
         """Number of segments found in all runs."""
         return sum(run.segments for run in self.runs)
+
+    def _repr_html_(self) -> str:
+        """Return the numbers of runs, surfaces and models, and what failed, as HTML."""
+        failed = [(run.name, run.reason) for run in self.failed]
+        failed += [(model.name, model.reason) for model in self.failed_models]
+        counts = f"{many(len(self.runs), 'run')}, {many(self.segments, 'segment')}"
+        return html_list(f"{self.folder}: {counts}", [("failed: " + n, why) for n, why in failed])
 
 
 @dataclass(frozen=True)
