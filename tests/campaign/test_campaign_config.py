@@ -1,5 +1,6 @@
 """The campaign file: what is right is read in SI, what is wrong is met with line, key and cure."""
 
+import inspect
 import json
 import re
 
@@ -7,10 +8,13 @@ import pytest
 
 from tribolab.campaign.settings.config import CAMPAIGN_SCHEMA_FILE, Campaign, campaign_schema
 from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.settings.moved_keys import move_keys
 from tribolab.campaign.settings.page import CAMPAIGN_PAGE, campaign_page
 from tribolab.campaign.settings.plan import plan_runs
 from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.core.errors import ConfigError
+from tribolab.friction.segments.find import find_segments
+from tribolab.friction.segments.limits import DETECTION
 from tribolab.reading.dialect.find import known_dialects, load_dialect
 from tribolab.reading.schema_folder import schema_folder
 
@@ -309,7 +313,6 @@ def test_the_published_page_has_every_key_quantity_and_default():
     assert page == campaign_page()
     assert '| `radius` | Radius of the cylinder or ball. | m | `"7 cm"` |  |' in page
     assert '| `fastest` | Highest sliding speed. | m/s | `"10 cm/s"` | `0.1` |' in page
-    assert "| `min_samples` | Fewest samples in a segment. | integer, ≥ 2 |  | `10` |" in page
     dialects = [load_dialect(path) for path in known_dialects().values()]
     named = {column.quantity for dialect in dialects for column in dialect.column}
     for quantity in named - {None}:  # without a quantity a column has a symbol, for formulas
@@ -407,6 +410,7 @@ OLD = '[joint]\ncompute = "never"\ndry = "dry"\n'
 def test_keys_of_the_last_release_are_moved_with_one_warning_each(folder):
     old = WHOLE.replace("[contact]\n", '[contact]\narea = "corrected"\nnormal_forces = ["9 N"]\n')
     old = old.replace("cycles = true", 'cycles = true\nmount = "2"')
+    old = old.replace("trim = 0.15", 'trim = 0.15\nmin_duration = "2 s"')
     with pytest.warns(FutureWarning, match="in the next release: write") as said:
         before = load(folder, (old + OLD).replace("dry]", 'dry]\nwork_of_adhesion = "1 mJ/m^2"'))
     where = [str(one.message).partition(": ")[2].split(" will be")[0] for one in said]
@@ -416,10 +420,27 @@ def test_keys_of_the_last_release_are_moved_with_one_warning_each(folder):
         "[contact] normal_forces",
         "[joint] compute",
         "[joint] dry",
+        "[segments] min_duration",
     ]
+    assert before.segment_options(before.run[0])["min_duration"] == "2 s"
     assert (before.model.area, before.model.normal_forces) == ("corrected", (9.0,))
     assert (before.model.joint, before.model.dry_medium) == (False, "dry")
     assert before.run[-1].labels == {"mount": "2"}
+
+
+def test_a_key_of_all_runs_moves_to_the_campaign_and_one_of_a_single_run_does_not():
+    named = {"files": "a", "labels_in_name": "*_{mount}_*", "segments": {"drift": 0.2}}
+    content = {"run": [dict(named), named | {"segments": {"trim": 0.1}}]}
+    assert len(move_keys(content)) == 1
+    assert content["campaign"] == {"files_named": "*_{mount}_*"}
+    assert content["run"][0]["segments"] == {"drift": 0.2}
+
+
+def test_the_limits_of_detection_are_the_defaults_of_the_function():
+    parameters = inspect.signature(find_segments).parameters
+    stated = {name: limit.value for name, limit in DETECTION.items() if limit.value == limit.value}
+    assert stated == {name: parameters[name].default for name in stated}
+    assert all(parameters[name].default is None for name in DETECTION.keys() - stated)
 
 
 def test_an_old_key_that_contradicts_the_new_one_is_refused(folder):

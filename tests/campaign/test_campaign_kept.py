@@ -182,7 +182,7 @@ def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
 @pytest.mark.slow
 def test_an_answer_about_data_that_were_read_replaces_the_earlier_one(campaign):
     text = campaign.read_text("utf-8")
-    campaign.write_text(text.replace("trim = 0.10", "min_duration = '9 h'"), "utf-8")
+    campaign.write_text(f"{text}\n[qc.limits.segments]\nmin_duration = '9 h'\n", "utf-8")
     outcome = run_campaign(campaign, jobs=1, figures="none")
     assert not any(run.kept for run in outcome.runs) and outcome.segments == 0
 

@@ -93,6 +93,7 @@ def test_the_derivatives_of_a_parabola_are_exact_and_noise_is_told():
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*in the instrument's file:FutureWarning")
 def test_a_campaign_states_a_mass_or_finds_it_and_says_so(tmp_path):
     (tmp_path / "raw").mkdir()
     run = made(crank(10e-3, 5.0, 40, 500.0), 1.2, by="position")[0]
@@ -105,7 +106,8 @@ def test_a_campaign_states_a_mass_or_finds_it_and_says_so(tmp_path):
         '[campaign]\nname = "inertia"\nraw = "raw"\n[segments]\nstroke_middle = "40 %"\n'
         '[[run]]\nfiles = "found.csv"\n[[run]]\nfiles = "stated.csv"\nmoving_mass = "2 kg"\n'
     )
-    assert load_campaign(tmp_path).run[1].moving_mass == 2.0
+    with pytest.warns(FutureWarning, match="write moving_mass in the instrument's file"):
+        assert load_campaign(tmp_path).run[1].moving_mass == 2.0
     tl.run_campaign(tmp_path / "campaign.toml", jobs=1, figures="none")
     findings = (tmp_path / "results" / "tables" / "checks.csv").read_text()
     assert "that of 2 kg (stated) is taken out: up to" in findings

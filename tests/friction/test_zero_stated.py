@@ -79,6 +79,7 @@ def test_of_drafted_files_only_those_of_one_layout_lend_a_zero(tmp_path, layout)
     assert (run.quality == "suspect") == (not lent)
 
 
+@pytest.mark.filterwarnings("ignore:.*in the instrument's file:FutureWarning")
 @pytest.mark.parametrize("entry", ["", 'zero_uncertainty = "1 N"\n', "rectified = true\n"])
 def test_what_the_campaign_file_states_of_the_zero_reaches_the_result(tmp_path, entry):
     run = programme([SPEED, None, SPEED], zero=lambda u: 0.5 + 0 * u, loaded_rests=True)

@@ -203,7 +203,7 @@ def test_a_mistake_of_ours_is_one_line_and_a_traceback_on_demand(monkeypatch, ca
 @pytest.mark.slow
 def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path):
     text = campaign.read_text(encoding="utf-8")
-    text = text.replace("[segments]\ntrim = 0.10\n", '[segments]\nmin_duration = "1000 h"\n')
+    text += '\n[qc.limits.segments]\nmin_duration = "1000 h"\n'
     campaign.write_text(text, encoding="utf-8")
     done = told("run", campaign, "-o", tmp_path / "new", "-j", 1)
     assert done.returncode == 3

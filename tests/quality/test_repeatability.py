@@ -152,7 +152,8 @@ def test_what_cannot_be_told_apart_is_refused(by, says):
     [
         ("*_{mount}_{operator}", "sb-r_dry_m2_ann", {"mount": "m2", "operator": "ann"}),
         ("{specimen}-*", "A7-x_1", {"specimen": "A7"}),
-        ("{mount}", "a_b", {}),
+        ("{surface}_{mount}", "a_b_c", {"surface": "a_b", "mount": "c"}),
+        ("{mount}_{operator}", "a", {}),
     ],
 )
 def test_labels_stand_in_names(pattern, name, labels):
@@ -171,9 +172,8 @@ def test_labels_come_from_the_campaign_file_as_it_is_now(original, tmp_path):
     file = copied(original, tmp_path)
     text = file.read_text("utf-8")
     assert labelled_segments(file).day.iloc[0][:4].isdigit(), "the day is that of the files"
-    text = text.replace(
-        "[[run]]\n", '[[run]]\nlabels_in_name = "*_31N_{mount}_*"\nlabels.batch = "7"\n'
-    )
+    text = text.replace("[[run]]\n", '[[run]]\nlabels.batch = "7"\n')
+    text = text.replace("[campaign]\n", '[campaign]\nfiles_named = "*_31N_{mount}_*"\n')
     file.write_text(text, "utf-8")
     table = labelled_segments(file)
     assert set(table.mount) == {"01", "02"} and set(table.batch) == {"7"}

@@ -71,11 +71,6 @@ def _entry_of(campaign: Campaign, run: Mapping[str, Any]) -> RunEntry | None:
     return None
 
 
-def _entry_labels(entry: RunEntry, file: str, files_named: str | None) -> dict[str, str]:
-    named = {}
-    if files_named is not None:
-        pattern = NamePattern(files_named, whole_words=True)
-        named = pattern.labels(PurePosixPath(file).stem)
-    if entry.labels_in_name is not None:
-        named |= NamePattern(entry.labels_in_name).labels(PurePosixPath(file).stem)
+def _entry_labels(entry: RunEntry, file: str, pattern: str | None) -> dict[str, str]:
+    named = NamePattern(pattern).labels(PurePosixPath(file).stem) if pattern else {}
     return named | entry.labels

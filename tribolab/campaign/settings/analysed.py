@@ -37,21 +37,9 @@ class Segments(Table):
     """Initial part of each run to leave out: a sliding distance, a time, or cycles."""
     steady: Literal["auto"] | None = None
     """Set "auto" to use only the part after running-in (see `running_in.csv`)."""
-    resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
-    """Relative speed difference that separates two neighbouring plateaus."""
-    drift: Annotated[float, Field(gt=0)] | None = None
-    """Relative speed change above which a plateau is a ramp."""
-    min_samples: Annotated[int, Field(ge=2)] | None = None
-    """Fewest samples in a segment."""
-    min_duration: Annotated[float, PositiveSi("s", "0.5 s")] | None = None
-    """Shorter segments are left out."""
-    max_gap: Annotated[float, PositiveSi("s", "2 s")] | None = None
-    """Longest gap between two samples of a segment; default: a twentieth of the segment."""
     speed_tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.1
     """Largest relative speed difference within one point of a curve. Speeds are grouped by
     set-point, if known; otherwise by the gaps between them."""
-    rest_speed: Annotated[float, PositiveSi("m/s", "0.1 um/s")] | None = None
-    """Speed below which the slider is at rest; default: 1e-5 of the highest speed."""
 
 
 class Friction(Table):
@@ -97,7 +85,8 @@ class Qc(Table):
     skip: tuple[SomeText, ...] = ()
     """Checks of runs and scans to skip."""
     limits: dict[SomeText, dict[SomeText, float | SomeText]] = {}
-    """Limits of checks, e.g. limits.spikes.noise = 10: numbers in SI, or text with a unit."""
+    """Limits of checks, e.g. limits.spikes.noise = 10: numbers in SI, or text with a unit;
+    limits.segments also has those of the detection of segments."""
 
     @property
     def _by_default(self) -> bool:

@@ -28,6 +28,7 @@ from tribolab.campaign.settings.media import (
 from tribolab.campaign.settings.table import Table
 from tribolab.campaign.settings.theory import Model, Rubber
 from tribolab.core.untyped import Arguments, Json
+from tribolab.friction.segments.limits import DETECTION
 from tribolab.reading.dialect.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
@@ -48,7 +49,8 @@ class About(Table):
     files_named: LabelPattern | None = None
     """Pattern of the run files' names, without extension:
     "{surface}_{medium}_{normal_force}_{repeat}"; also {sliding_speed}, {mount}, {specimen},
-    {operator}, {day} and your own labels. Values stated in a [[run]] take precedence."""
+    {operator}, {day} and your own labels; * matches anything. Values stated in a [[run]] take
+    precedence."""
     note: SomeText | None = None
     """Note at the top of the report."""
 
@@ -202,6 +204,8 @@ class Campaign(Table):
         """Arguments of `find_segments` for the runs of an entry: its own over the campaign's."""
         of_curves = {"speed_tolerance"}
         options = self.segments.model_dump(exclude_none=True, exclude=of_curves)
+        limits = self.qc.limits.get("segments", {})
+        options |= {name: value for name, value in limits.items() if name in DETECTION}
         if entry.segments is not None:
             options |= entry.segments.model_dump(
                 exclude_unset=True, exclude_none=True, exclude=of_curves

@@ -9,7 +9,6 @@ from pydantic import Field
 
 from tribolab.campaign.settings.analysed import Segments
 from tribolab.campaign.settings.fields import (
-    LabelPattern,
     Patterns,
     PositiveSi,
     ShareOfMass,
@@ -150,7 +149,7 @@ class RunEntry(Table):
     """Interval in which the zero of the friction signal is read: "first 200 samples", "first 2 s",
     "1.5 s to 3 s", or "file blank.csv", a run without contact in the raw folder."""
     moving_mass: Annotated[float, PositiveSi("kg", "1.2 kg")] | None = None
-    """Mass between contact and force sensor; its inertia is subtracted from the force."""
+    """Mass between contact and force sensor (next release: in the instrument's file only)."""
     stiffness: Annotated[float, PositiveSi("N/m", "12 kN/m")] | None = None
     """Stiffness of the rig between drive and contact, in the direction of sliding; compared with
     the critical stiffness for stick-slip."""
@@ -158,13 +157,10 @@ class RunEntry(Table):
     """Measured contact area (camera), if the files do not record it; its shear stress is shown next
     to that of the theory."""
     rectified: bool | None = None
-    """Whether friction was recorded without its sign; default: found from the reversals."""
+    """Whether friction was recorded without its sign (next release: in the instrument's file)."""
     labels: dict[SomeText, SomeText] = {}
     """Labels for `tribolab lab repeatability`, e.g. { operator = "Ann", mount = "2" }. Default of
     `day`: from the files."""
-    labels_in_name: LabelPattern | None = None
-    """Position of labels in a file's name, without extension: "*_{mount}_{operator}_*". {} matches
-    letters and digits, * matches anything."""
     cycles: bool = False
     """Whether the files are consecutive cycles of one run instead of separate runs."""
     segments: Segments | None = None

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from tribolab.core.untyped import Json
+from collections.abc import Iterator
 
-_TO_MODEL = {  # table and key before: key in [model] now
-    ("joint", "together"): "together",
-    ("joint", "dry"): "dry_medium",
-    ("contact", "area"): "area",
-    ("contact", "normal_forces"): "normal_forces",
+from tribolab.core.untyped import Json
+from tribolab.friction.segments.limits import DETECTION
+
+MOVED = {  # key before: key now; of [[run]] to another table only if all runs agree
+    "joint.together": "model.together",
+    "joint.dry": "model.dry_medium",
+    "contact.area": "model.area",
+    "contact.normal_forces": "model.normal_forces",
+    **{f"run.{key}": f"run.labels.{key}" for key in ("operator", "mount", "day", "specimen")},
+    "run.labels_in_name": "campaign.files_named",
+    **{f"segments.{key}": f"qc.limits.segments.{key}" for key in DETECTION},
+    **{f"run.segments.{key}": f"qc.limits.segments.{key}" for key in DETECTION},
 }
+_TO_INSTRUMENT = ("moving_mass", "rectified")  # keys of [[run]] that its file can state
 _COMPUTE = {"always": True, "two loads": True, "never": False}  # [joint] compute, before
-_LABELS = ("operator", "mount", "day", "specimen")  # keys of [[run]], before
 
 
 def move_keys(content: Json) -> list[str]:
@@ -21,62 +28,69 @@ def move_keys(content: Json) -> list[str]:
 
     Examples
     --------
-    >>> content = {"joint": {"compute": "never"}}
-    >>> move_keys(content)
-    ['[joint] compute will be removed in the next release: write [model] joint = false']
+    >>> content = {"joint": {"compute": "never"}, "contact": {"area": "persson"}}
+    >>> for line in move_keys(content):
+    ...     print(line)
+    [joint] compute will be removed in the next release: write [model] joint = false
+    [contact] area will be removed in the next release: write [model] area
     >>> content
-    {'model': {'joint': False}}
+    {'contact': {}, 'model': {'joint': False, 'area': 'persson'}}
     """
-    return _move_labels(content) + _move_to_model(content)
-
-
-def _move_to_model(content: Json) -> list[str]:
-    lines: list[str] = []
-    model = content.get("model", {})
-    if not isinstance(model, dict):
-        return lines
-    for (table, old), new in _TO_MODEL.items():
-        for name, before in _tables(content, table):
-            if old in before and model.get(new, before[old]) == before[old]:
-                model[new] = before.pop(old)
-                lines.append(_line(f"[{name}] {old}", f"[model] {new}"))
-    for name, before in _tables(content, "joint"):
-        now = _COMPUTE.get(str(before.get("compute")))
-        if now is not None and model.get("joint", now) == now:
-            model["joint"] = now
-            del before["compute"]
-            lines.append(_line(f"[{name}] compute", f"[model] joint = {str(now).lower()}"))
+    lines = []
+    for table in _tables(content, "joint"):
+        joint = _COMPUTE.get(str(table.get("compute")))
+        if joint is not None and _set(content, "model.joint", joint):
+            del table["compute"]
+            lines.append(_line("joint.compute", f"[model] joint = {str(joint).lower()}"))
+    for old, new in MOVED.items():
+        place, _, key = old.rpartition(".")
+        found = [table for table in _tables(content, place) if key in table]
+        within = new.startswith(f"{place}.")
+        runs = [*_tables(content, "run")] if place[:3] == "run" else found
+        agree = len(found) == len(runs) and all(t[key] == found[0][key] for t in found)
+        moved = [
+            table.pop(key)
+            for table in found
+            if (within or agree)
+            and _set(
+                table if within else content, new.removeprefix(f"{place}." * within), table[key]
+            )
+        ]
+        if moved:
+            lines.append(_line(old, _words(new)))
     if content.get("joint") == {}:
         del content["joint"]
-    if model:
-        content["model"] = model
+    for key in _TO_INSTRUMENT:
+        if any(key in run for run in _tables(content, "run")):
+            lines.append(_line(f"run.{key}", f"{key} in the instrument's file"))
     return lines
 
 
-def _move_labels(content: Json) -> list[str]:
-    lines: list[str] = []
-    runs = content.get("run")
-    tables = [run for run in runs if isinstance(run, dict)] if isinstance(runs, list) else []
-    for key in _LABELS:
-        moved = False
-        for run in tables:
-            labels = run.get("labels", {})
-            if key in run and isinstance(labels, dict) and key not in labels:
-                run["labels"] = {**labels, key: run.pop(key)}
-                moved = True
-        if moved:
-            lines.append(_line(f"[[run]] {key}", f"[[run]] labels.{key}"))
-    return lines
+def _tables(content: Json, place: str) -> Iterator[Json]:
+    """Yield the tables of a place: every [[run]], and [contact.NAME] with [contact]."""
+    name, _, inner = place.partition(".")
+    found = content.get(name)
+    tables = found if isinstance(found, list) else [found]
+    if name == "contact" and isinstance(found, dict):
+        tables = [found, *found.values()]
+    for table in tables:
+        if isinstance(table, dict):
+            yield from _tables(table, inner) if inner else (table,)
 
 
-def _tables(content: Json, name: str) -> list[tuple[str, Json]]:
-    """Return a table and its named tables, [contact.NAME], with their names."""
-    table = content.get(name)
-    if not isinstance(table, dict):
-        return []
-    named = [(f"{name}.{key}", of) for key, of in table.items() if isinstance(of, dict)]
-    return [(name, table), *named]
+def _set(content: Json, place: str, value: object) -> bool:
+    """Set a key, unless it has another value; return whether it has this one now."""
+    *names, key = place.split(".")
+    table: object = content
+    for name in names:
+        table = table.setdefault(name, {}) if isinstance(table, dict) else None
+    return isinstance(table, dict) and bool(table.setdefault(key, value) == value)
+
+
+def _words(place: str) -> str:
+    table, _, key = place.partition(".")
+    return f"[[run]] {key}" if table == "run" else f"[{table}] {key}"
 
 
 def _line(old: str, now: str) -> str:
-    return f"{old} will be removed in the next release: write {now}"
+    return f"{_words(old)} will be removed in the next release: write {now}"

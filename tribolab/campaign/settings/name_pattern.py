@@ -7,7 +7,6 @@ import re
 import regex
 
 _FIELD = re.compile(r"\{([^{}]*)\}|(\*)")
-_LABEL = r"[^\W_]+(?:[+#][^\W_]*)*"  # letters and digits: _ - . and spaces part the labels
 _MARKS = "_- "  # that separate whole words
 _SECONDS = 0.5
 _MAX_STARS = 6
@@ -19,10 +18,8 @@ class NamePattern:
     Parameters
     ----------
     text
-        ``{label}`` stands for letters and digits, ``*`` for anything, all else for itself.
-    whole_words
-        Whether labels reach to the mark that follows them in the pattern (``_``, ``-`` or a
-        space), and the first one over it if need be.
+        ``{label}`` matches up to the mark that separates labels (``_``, ``-`` or a space), the
+        first one also beyond it; ``*`` matches anything, all else itself.
 
     Raises
     ------
@@ -35,11 +32,11 @@ class NamePattern:
     {'mount': 'm2', 'operator': 'ann'}
     >>> NamePattern("*_{mount}_{operator}").labels("other")
     {}
-    >>> NamePattern("{surface}-{repeat}", whole_words=True).labels("sb_r-2")
+    >>> NamePattern("{surface}-{repeat}").labels("sb_r-2")
     {'surface': 'sb_r', 'repeat': '2'}
     """
 
-    def __init__(self, text: str, *, whole_words: bool = False) -> None:
+    def __init__(self, text: str) -> None:
         names = [name for name, star in _FIELD.findall(text) if not star]
         if not names:
             raise ValueError("no label is named; write e.g. '*_{mount}_*'")
@@ -54,7 +51,7 @@ class NamePattern:
             raise ValueError(f"more than {_MAX_STARS} * are too many")
         parts, end = [], 0
         mark = next((each for each in _MARKS if f"}}{each}{{" in text), _MARKS[0])
-        first, other = (".+", f"[^{re.escape(mark)}]+") if whole_words else (_LABEL, _LABEL)
+        first, other = ".+", f"[^{re.escape(mark)}]+"
         for gap in _FIELD.finditer(text):
             parts.append(re.escape(text[end : gap.start()]))
             label = first if gap[1] == names[0] else other

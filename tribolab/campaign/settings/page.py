@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from tribolab.campaign.settings.config import campaign_schema
-from tribolab.friction.segments.find import find_segments
 from tribolab.reading.dialect.uncertainty import NAMES
 from tribolab.units.quantities import QUANTITIES, Quantity
 from tribolab.units.reciprocals import reciprocal
@@ -89,13 +87,12 @@ def campaign_page() -> str:
         title = _TABLE_NAMES.get(name, f"[{name}]")
         wanted = "At least one is required." if name == "run" else "Required."
         needed = f" {wanted}" if name in required else ""
-        known = inspect.signature(find_segments).parameters if name == "segments" else {}
         parts += [f"## {title}\n", f"{table['description']}{needed}\n"]
         if name == "uncertainty":
             stated = schema["$defs"]["StatedUncertainty"]
-            parts += [*_keys(stated, {}), _NAMES, *_names(table)]
+            parts += [*_keys(stated), _NAMES, *_names(table)]
         else:
-            parts += _keys(table, known)
+            parts += _keys(table)
     names = list(QUANTITIES)
     signals = (*names[: names.index(_LAST_SIGNAL) + 1], "friction_coefficient")
     parts += [_COLUMNS, *_quantities(signals), _SCANS, *_quantities(_SCAN_COLUMNS), _VALUES]
@@ -113,15 +110,13 @@ def _reference(field: Mapping[str, Any]) -> str:
     return str(inner["$ref"]).rpartition("/")[2]
 
 
-def _keys(table: Mapping[str, Any], parameters: Mapping[str, inspect.Parameter]) -> list[str]:
-    """Rows of a table's keys; a default that the model leaves to a function is the function's."""
+def _keys(table: Mapping[str, Any]) -> list[str]:
+    """Return the rows of a table's keys."""
     rows = []
     for name, field in table["properties"].items():
         what, example = _kind(field)
-        default = field.get("default")
-        if default is None and name in parameters:
-            default = parameters[name].default
-        default_text = "required" if name in table.get("required", ()) else _default(default)
+        required = name in table.get("required", ())
+        default_text = "required" if required else _default(field.get("default"))
         rows.append((f"`{name}`", _flat(field["description"]), what, example, default_text))
     return _table(("key", "meaning", "unit or type", "example", "default"), rows)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.settings.contact_pairs import pair_label
 from tribolab.campaign.settings.files import (
@@ -14,7 +14,6 @@ from tribolab.campaign.settings.files import (
     resolve_patterns,
     sha256_of_dialect,
 )
-from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.naming.files_named import named_by_files
 from tribolab.campaign.settings.naming.run_names import unique_names
 from tribolab.campaign.settings.problems import SettingsProblem, message
@@ -148,8 +147,8 @@ def plan_runs(campaign: Campaign) -> Plan:
                             name=name,
                             files=tuple(files),
                             labels=tuple(label_of(campaign, file) for file in files),
-                            mount=_label(entry, files[0], "mount"),
-                            specimen=_label(entry, files[0], "specimen"),
+                            mount=entry.labels.get("mount", ""),
+                            specimen=entry.labels.get("specimen", ""),
                             zero_uncertainty_at=places[id(entry)],
                             **settings[id(entry)],
                         ),
@@ -195,14 +194,6 @@ def _zero_stated_at(campaign: Campaign, number: int) -> str:
     line = line_of(text, ["run", number, "zero_uncertainty"])
     at = f", line {line}" if line else ""
     return f"{campaign.file.name}{at}, [[run]] {number + 1}"
-
-
-def _label(entry: RunEntry, file: Path, key: Literal["mount", "specimen"]) -> str:
-    """Return the mount or the specimen of a run, as stated or as in the file's name."""
-    stated = entry.labels.get(key)
-    if stated is not None or entry.labels_in_name is None:
-        return stated or ""
-    return NamePattern(entry.labels_in_name).labels(file.stem).get(key, "")
 
 
 def _named(run: PlannedRun, campaign: Campaign) -> PlannedRun:
@@ -300,7 +291,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "moving_mass": entry.moving_mass,
         "blank": [sha256_of_file(blank) if blank.is_file() else "" for blank in blanks],
     }
-    mounts = [entry.labels.get("mount"), entry.labels.get("specimen"), entry.labels_in_name]
+    mounts = [entry.labels.get("mount"), entry.labels.get("specimen")]
     return settings | {
         "instrument": instrument,
         "config_sha256": sha256_of(settings | reading | {"mount": mounts}),

@@ -210,8 +210,8 @@ class Store(Catalogue):
             raise OutputError(
                 f"{kind} {name}: its record of {len(plain) >> 20} MB exceeds the limit of "
                 f"{_MAX_RECORD >> 20} MB",
-                cure="state stroke_middle or min_duration in [segments] for fewer segments, or "
-                "split the file",
+                cure="for fewer segments, state stroke_middle in [segments] or "
+                "limits.segments.min_duration in [qc], or split the file",
             )
         text = zlib.compress(plain, 3)
         coarse, fine = (trace.coarse, trace.fine) if trace else ("", "")

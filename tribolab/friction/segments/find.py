@@ -138,6 +138,7 @@ def find_segments(
     shortest = to_si(min_duration, "s", name="min_duration")
     gap = None if max_gap is None else to_si(max_gap, "s", name="max_gap")
     slow = None if rest_speed is None else to_si(rest_speed, "m/s", name="rest_speed")
+    min_samples = int(min_samples)
     constancy = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source, standstill = velocity_source(run), 0.0

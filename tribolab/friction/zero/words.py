@@ -78,7 +78,7 @@ def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[Doubt, ...]:
     done = "the direction of sliding was put back as its sign" if unfolded else "it was left as is"
     cure = (
         "State `rectified = true` if the record holds no sign, `rectified = false` if its offset "
-        "is real: in the [[run]], or of the column in the dialect."
+        "is real, for the column in the instrument's file."
     )
     remark = doubt(f"{fold.why}; {done}", cure, np.arange(size))
     remark["check"] = "rectified"

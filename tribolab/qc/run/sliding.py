@@ -14,6 +14,7 @@ from tribolab.friction.coefficient import limits as of_trends
 from tribolab.friction.coefficient.steadiness import chance_limit, relative_change, undecided
 from tribolab.friction.oscillation.spectrum.lines import Line
 from tribolab.friction.points.strokes import run_means, shared_error
+from tribolab.friction.segments.limits import DETECTION
 from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.of_run import PAIRED
@@ -101,7 +102,7 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         text = "a test by ramps: friction over speed includes the zero of the friction force"
         cure = (
             "Record a rest without load, or ramps in both directions, for the zero. For intervals "
-            "of constant speed see `drift` in [segments]."
+            "of constant speed see `limits.segments.drift` in [qc]."
         )
         return [Result("suspect", "", text, cure=cure)]
     if why:
@@ -174,8 +175,9 @@ SLIDING_CHECKS = (
         "Record position or speed, slide longer at one speed, or state `sliding_speed` "
         "in the campaign file. With a crank drive, use the middle of each stroke "
         "(`segments.stroke_middle = 0.5` in [[run]] uses half of it). See also `drift` "
-        "and `min_samples` in [segments].",
+        "and `min_samples` below, in `[qc] limits.segments`.",
         {
+            **DETECTION,
             "uncertain": Limit(0.3, "1", "a third of the value: surfaces cannot be distinguished"),
             "known_to": Limit(0.005, "1", "a full film has 0.001 to 0.01: half the smaller value"),
             "lost_strokes": Limit(

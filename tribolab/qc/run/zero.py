@@ -60,7 +60,7 @@ ZERO_CHECKS = (
         "rectified",
         30,
         "Was the friction force recorded with its sign?",
-        "State `rectified` in [[run]], or for the column in the dialect.",
+        "State `rectified` for the column, in the instrument's file.",
         {},
         _rectified_signal,
     ),

@@ -51,7 +51,7 @@ def named_by_files(pattern: str | None, files: Sequence[Path]) -> Named:
     """
     if pattern is None:
         return Named()
-    labels = NamePattern(pattern, whole_words=True).labels(common_name(files))
+    labels = NamePattern(pattern).labels(common_name(files))
     amounts = {}
     for name, unit in _AMOUNTS.items():
         try:
