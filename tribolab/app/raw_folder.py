@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.campaign.store.ledger import Ledger
-from tribolab.reading.folder_content import content_of, may_hold_data
+from tribolab.reading.folder_content import contents_of, may_hold_data
 
 _MAX_FILES = 5000  # most files in a folder; e.g. a whole disk is not a campaign
 
@@ -56,11 +56,9 @@ def sorted_by_content(
     """
     kinds = RawFiles([], [], [], [])
     runs: list[list[Path]] = []
+    alone = contents_of((group[0] for group in groups if len(group) == 1), instrument)
     for group in groups:
-        if len(group) > 1:
-            kind = "run"
-        else:
-            kind = content_of(group[0], instrument)
+        kind = "run" if len(group) > 1 else alone[group[0]]
         if kind == "run":
             runs.append(list(group))
             kinds.runs.extend(group)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 
 from tribolab.core.errors import ReadError, TribolabError
 from tribolab.reading.file_patterns import matching
 from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import is_modulus_file
-from tribolab.reading.unknown_run import is_run_file
+from tribolab.reading.text.first_bytes import peek
+from tribolab.reading.unknown_run import draft_of, is_run_file
 
 _NO_DATA = (
     *(".toml", ".py", ".ipynb", ".md", ".rst", ".pdf", ".doc", ".docx", ".ppt", ".pptx", ".html"),
@@ -22,21 +25,43 @@ def may_hold_data(path: Path) -> bool:
     return path.suffix.lower() not in _NO_DATA
 
 
-def content_of(path: Path, instrument: str | None = None) -> str:
-    """Return "run", "scan", "modulus" or "results"; an unreadable file counts as a run.
+def contents_of(paths: Iterable[Path], instrument: str | None = None) -> dict[Path, str]:
+    """Return what each file contains: "run", "scan", "modulus" or "results".
+
+    An unreadable file counts as a run. A text without a table of numbers, such as a log that broke
+    off, counts as what the files contain whose names differ from its own in numbers only.
 
     Raises
     ------
     ConfigError, ReadError
-        If the file cannot be read as `instrument`.
+        If a file cannot be read as `instrument`.
     """
+    found = {path: _content_of(path, instrument) for path in paths}
+    siblings: dict[str, Counter[str]] = {}
+    for path, content in found.items():
+        siblings.setdefault(_without_numbers(path), Counter()).update([content] if content else [])
+    for path in (path for path, content in found.items() if not content):
+        [*usual] = siblings[_without_numbers(path)].most_common(1)
+        found[path] = usual[0][0] if usual else "scan"
+    return found
+
+
+def _without_numbers(path: Path) -> str:
+    return re.sub(r"\d+", "#", path.name)
+
+
+def _content_of(path: Path, instrument: str | None) -> str:
+    """Return what a file contains; "" of a text without a table of numbers."""
     try:
         kind = kind_of(path, instrument)
         if kind != "unknown":
             return kind
         if is_modulus_file(path):
             return "modulus"
-        return "run" if is_run_file(path, by_name=False) else "scan"
+        if is_run_file(path, by_name=False):
+            return "run"
+        bare = peek(path).format == "text" and draft_of(path) is None
+        return "" if bare else "scan"
     except TribolabError:
         if instrument is not None:
             raise
@@ -55,7 +80,7 @@ def files_with(content: str, pattern: str | Path) -> list[Path]:
     named = [path for path in matching(Path(pattern, "*") if folder else pattern) if path.is_file()]
     if not named:
         raise ReadError(f"{pattern}: only folders have such a name; write e.g. '{pattern}/*.csv'")
-    kinds = {path: content_of(path) for path in named if may_hold_data(path)}
+    kinds = contents_of(path for path in named if may_hold_data(path))
     files = [path for path, kind in kinds.items() if kind == content]
     if not files:
         counts = Counter(kinds.values())

@@ -6,7 +6,7 @@ import re
 from itertools import islice
 from typing import NamedTuple
 
-from tribolab.reading.lexicon.lexicon import known_words, normalise_label, role_of
+from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label, role_of
 
 _HEAD_LINES = 40  # above such a table
 _MAX_ROWS = 2000  # more are no measurements of a person
@@ -20,6 +20,7 @@ _PARAMETER = re.compile(
 _CELLS = re.compile(r"\s*[;\t]\s*|\s*,(?!\d)\s*|\s{2,}")
 _BLANKS = re.compile(r"[^\S\t]{3,}")  # the search for cells takes the square of their number
 _COMMAS = re.compile(r"\s*,\s*")
+_LAST_BRACKET = re.compile(r"\s*[\[(][^\[(]*$")
 _NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 
 
@@ -83,13 +84,14 @@ def find_other_test(text: str) -> str:
     >>> find_other_test("Time [s];Shear rate [1/s];Friction force [N]\n0.1;1;2\n")
     ''
     """
-    for line in _first_lines(text, _HEAD_LINES):
+    lines = _first_lines(text, _HEAD_LINES)
+    for line in lines:
         for between in (_CELLS, _COMMAS) if len(line) <= _MAX_LINE else ():
             labels = [label.strip(' "') for label in between.split(_BLANKS.sub("  ", line))]
             if any(map(_NUMBER.fullmatch, labels)):
                 continue
             found = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
-            if found & _OF_FRICTION:
+            if found & _OF_FRICTION or _has_moduli(labels, between, lines):
                 return ""
             for test, needed in _TESTS.items():
                 if needed <= found:
@@ -100,6 +102,20 @@ def find_other_test(text: str) -> str:
 def _first_lines(text: str, count: int) -> list[str]:
     """Return the first lines that are not blank, without the blanks around them."""
     return list(islice((bare for line in text.splitlines() if (bare := line.strip())), count))
+
+
+def _has_moduli(labels: list[str], between: re.Pattern[str], lines: list[str]) -> bool:
+    """Whether columns of storage and loss modulus are named and filled.
+
+    File: a Malvern Kinexus writes the columns of all its tests in each file; those of other tests
+    are empty (bsaintmichel/read-rheol).
+    """
+    bare = [normalise_label(_LAST_BRACKET.sub("", label)) for label in labels]
+    moduli = map(names, ("storage_modulus", "loss_modulus"))
+    places = [next((p for p, x in enumerate(bare) if x in known), -1) for known in moduli]
+    rows = (between.split(line) for line in lines if min(places) >= 0)
+    rows = (row for row in rows if len(row) > max(places))
+    return any(all(_NUMBER.fullmatch(row[p].strip()) for p in places) for row in rows)
 
 
 # files: krlennon/mastercurves (creep, relaxation), bsaintmichel/read-rheol and

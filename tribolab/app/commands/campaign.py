@@ -337,9 +337,8 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     nothing = nothing and not any(run.ramp for run in outcome.runs)
     if nothing and len(outcome.failed) < len(outcome.runs):  # else failure_lines has reasons
         say(
-            "tribolab: no run contains a segment of constant speed; `drift` and `min_samples` of "
-            "[qc] limits.segments define constant, and [segments] stroke_middle = 0.5 takes half "
-            "of each stroke that a crank drives",
+            "tribolab: no run contains a segment of constant speed (why: the check `segments`, "
+            "above); `drift` and `min_samples` of [qc] limits.segments define constant",
             to_stderr=True,
         )
     spoilt = (

@@ -42,6 +42,7 @@ _MAX_TEXT = 300  # characters of a file's own text
 _SHOWN_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 _SHOWN_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
 _INSTALL = "install it: pip install 'tribolab[formats]'"
+_OF_MOTION = {"sliding_velocity", "position", "rotation_speed", "step", "set_speed"}
 _ROUNDING = 1e-6  # share of a step: positions with smaller deviations are evenly spaced
 
 
@@ -105,7 +106,8 @@ def _modulus_lines(path: Path) -> list[str]:
     try:
         table = read_modulus_table(path)
     except ReadError as error:
-        raise ReadError(f"a modulus over frequency: {error.what}", cure=error.cure) from error
+        what = f"a modulus over frequency: {error.what}"
+        raise ReadError(what, where=error.where, cure=error.cure) from error
     omega = table.angular_frequency
     warm = f" at {table.temperature:.3g} C" if table.temperature == table.temperature else ""
     lines = [
@@ -181,7 +183,8 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
                 known_log(path) if bare and not named else read_log(path)  # raises a specific error
             except ReadError as as_run:
                 if bare:
-                    what = f"{as_run.what}; taken for a profile or map, {error.what}"
+                    known = str(as_run.what).split("; of its columns")[0]
+                    what = f"{known}; taken for a profile or map, {error.what}"
                     general = error.cure in ("", cures.MEND_UNITS, cures.SIZE)
                     cure = as_run.cure if general else error.cure
                     raise ReadError(what, where=as_run.where, cure=cure) from error
@@ -338,7 +341,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
     """
     names = set(facts["columns"])
     forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
-    if not names & forces:
+    if not names & forces and names & _OF_MOTION:
         return []  # a motion log needs nothing else
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")

@@ -27,10 +27,12 @@ from tribolab.friction.segments.stretches import (
     track,
     velocity_source,
 )
-from tribolab.friction.segments.strokes import middle_parts, shuttles
+from tribolab.friction.segments.strokes import find_strokes, middle_parts, shuttles
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
+# a sine covers the middle half of its way in a third of the time
+_SAMPLES_OF_STROKE = 3 * limits.MIN_SAMPLES_OF_MIDDLE.value
 _STROKE_DEGREE = 5  # degree of the polynomial through the positions of a stroke
 _LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
 
@@ -178,9 +180,9 @@ def find_segments(
     if run.attrs.get("rows_are") == "either":
         return _use_points(run, source)
     if "stroke_m" not in run.attrs and not shuttles(run):
-        return plateaus
+        return _with_sparse_strokes(run, plateaus)
     try:  # a crank-driven slider has no constant speed: use the middles of its strokes
-        return _use_strokes(
+        middles = _use_strokes(
             run,
             source,
             limits.MIDDLE_OF_CRANK_STROKE.value,
@@ -188,6 +190,25 @@ def find_segments(
         )
     except AnalysisError:  # not reciprocating: the reason why no plateau was found is more useful
         return plateaus
+    return _with_sparse_strokes(run, middles)
+
+
+def _with_sparse_strokes(run: xr.Dataset, segments: xr.Dataset) -> xr.Dataset:
+    """State the samples of a stroke, and the rate it needs, if they are too few for a segment."""
+    if segments.sizes["segment"] or not {"position", "sliding_velocity"} & set(run.data_vars):
+        return segments
+    try:
+        first = find_strokes(run).first
+    except AnalysisError:  # no strokes
+        return segments
+    samples, lasts = (
+        float(median(np.diff(first))),
+        float(median(np.diff(run["time"].values[first]))),
+    )
+    if samples >= _SAMPLES_OF_STROKE:
+        return segments
+    rate = _SAMPLES_OF_STROKE / lasts
+    return segments.assign_attrs(samples_of_stroke=samples, needed_rate_Hz=rate)
 
 
 def _plateau_share(run: xr.Dataset, plateaus: xr.Dataset) -> float:
@@ -220,6 +241,11 @@ def why_no_segment(segments: xr.Dataset) -> str:
     """
     if segments.sizes["segment"]:
         return ""
+    if (samples := segments.attrs.get("samples_of_stroke")) is not None:
+        return (
+            f"no segment: a stroke has {samples:g} samples, and its middle half needs "
+            f"{_SAMPLES_OF_STROKE}; record at {segments.attrs['needed_rate_Hz']:.3g} Hz or more"
+        )
     lasted = _omitted_times(segments)
     whole = sum(lasted.values())
     shares = [

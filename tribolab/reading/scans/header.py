@@ -28,6 +28,7 @@ from tribolab.reading.scans.unit_words import (
 )
 from tribolab.units.spellings import unit_of_length
 
+_MAX_COUNT = 1e9  # of steps of a resolution
 _MAX_LINE = 300  # most characters of a line
 _MAX_NUMBERS = 2  # in an entry; more are a date, a time, or a row of results
 _NUMBER = r"(?<![\w.])[-+]?\d+(?:[{marks}]\d+)?(?:[eE][-+]?\d+)?"
@@ -153,6 +154,21 @@ def unit_of_range(header: MapHeader, heights: np.ndarray) -> float | None:
     reach = float(np.ptp(known)) if known.size else 0.0
     fitting = {unit for size, unit in header.sizes if abs(reach - size) <= SAME_RANGE.value * size}
     return only_one(fitting)
+
+
+def unit_of_resolution(header: MapHeader, heights: np.ndarray) -> float | None:
+    """Return the unit [m] of a stated height resolution if the heights are its multiples.
+
+    File: an area of an Olympus OLS5000, "ZResolution,0.001,[um]"
+    (jarredclloyd/GeochemistryTools.jl).
+    """
+    known = heights[np.isfinite(heights)]
+    for size, unit in header.sizes if known.size else ():
+        counts = known / size
+        whole = np.abs(counts).max() < _MAX_COUNT and np.allclose(counts, counts.round(), atol=1e-3)
+        if whole and np.gcd.reduce(counts.round().astype(np.int64)) == 1:
+            return unit
+    return None
 
 
 def _split_entries(text: str, *, commas_part: bool) -> list[str]:

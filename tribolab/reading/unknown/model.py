@@ -137,7 +137,31 @@ def other_units(si_unit: str, chosen: str = "") -> tuple[str, ...]:
 
 
 def time_unit(values: np.ndarray) -> str:
-    """Whole numbers that proceed by five and more are milliseconds, other numbers seconds."""
+    """Whole numbers that proceed by five and more are milliseconds, other numbers seconds.
+
+    By a thousand and more, and not in tens, they are microseconds, as of Arduino's micros().
+    """
     steps = np.diff(values[np.isfinite(values)])
     whole = steps.size and (values == np.round(values)).all()
+    if whole and np.median(steps) >= 1000 and (values % 10 != 0).mean() > 0.5:
+        return "us"
     return "ms" if whole and np.median(steps) >= 5 else "s"
+
+
+def proceeds_by_seconds(values: np.ndarray) -> bool:
+    """Whether a clock without a unit proceeds by a round part of a second, written with decimals.
+
+    A clock of milliseconds is a whole number; a second is no round part of a minute.
+    File: Rtec MFT, "Timestamp" 0.168, 0.268 (Dichimanaym/Tribometer-Data-Processing).
+
+    >>> proceeds_by_seconds(np.array([0.168, 0.268, 0.368, 0.468]))
+    True
+    >>> proceeds_by_seconds(np.arange(4) / 60), proceeds_by_seconds(np.arange(4) * 10.0)
+    (False, False)
+    """
+    steps = np.diff(values[np.isfinite(values)])
+    if steps.size < 2 or not (steps >= 0).any() or (values == np.round(values)).all():
+        return False
+    step = float(np.median(steps))
+    parts = step / 10.0 ** np.floor(np.log10(step)) if step > 0 else 0.0
+    return bool(step <= 1 and min(abs(parts / n - 1) for n in (1, 2, 2.5, 4, 5, 8, 10)) < 1e-3)

@@ -5,6 +5,7 @@ Spreadsheets and mathematics programs write such maps: x across the top, y down 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import islice, starmap
 from pathlib import Path
@@ -19,17 +20,21 @@ from tribolab.reading.raw.unpacked import ZIP, is_workbook
 from tribolab.reading.scans.formats.matrix import GRAMMARS, cells_of, texts_of, value_of
 from tribolab.reading.scans.formats.named_units import unit_remedy
 from tribolab.reading.scans.formats.profilometers import MissingUnitError
-from tribolab.reading.scans.header import map_header
+from tribolab.reading.scans.header import map_header, unit_of_resolution
 from tribolab.units.conversion import conversion
 
 _HEAD_LINES = 60  # most lines above the positions
 _MIN_ROWS = 8  # least rows, and heights of each
 _HEAD = 1 << 20  # bytes in which a map must begin
+_COUNT = re.compile(r"([^\W\d_][^\d]{0,19}?[\s=_]*)(\d+)")  # a label of a column: a word, a number
 _EVEN = 1e-2  # rounding of positions, as share of a step
 
 
 class _Map(NamedTuple):
-    """Header lines, the corner cell, positions [file's unit] across and down, heights (y, x)."""
+    """Header lines, the corner cell, positions [file's unit] across and down, heights (y, x).
+
+    Labels across such as "POS = 3" are `counted`: they number the points and are no positions.
+    """
 
     above: list[str]
     corner: str
@@ -37,6 +42,7 @@ class _Map(NamedTuple):
     y: np.ndarray
     heights: np.ndarray
     mark: str
+    counted: bool
 
 
 def read_labelled_map(
@@ -66,10 +72,18 @@ def read_labelled_map(
         return None
     lines = [*found.above, found.corner]
     header = map_header(lines, found.heights.shape, found.mark)
-    along = conversion(x_unit, "m")[0] if x_unit else header.along
+    unit = conversion(x_unit, "m")[0] if x_unit else header.along
+    along, down = (header.dx, header.dy) if found.counted else (unit, unit)
     height = conversion(height_unit, "m")[0] if height_unit else header.height
+    height = unit_of_resolution(header, found.heights) if height is None else height
+    if found.counted and (along is None or down is None):
+        raise MissingUnitError(
+            "a map whose rows and columns number its points, and whose pitch is not stated",
+            where=path,
+            cure="write it above the numbers, e.g. 'Pitch: 0.5 um'",
+        )
     lacking = ["positions"] * (along is None) + ["heights"] * (height is None)
-    if along is None or height is None:
+    if along is None or down is None or height is None:
         raise MissingUnitError(
             "a map with positions along two sides that does not say the unit of its "
             f"{' and '.join(lacking)}",
@@ -82,7 +96,7 @@ def read_labelled_map(
         attrs["taken_for_missing"] = "; ".join(f"height: {mark.words}" for mark in marks)
     scan = xr.Dataset(
         {"height": (("y", "x"), measurable(heights))},
-        {"y": along * found.y, "x": along * found.x},
+        {"y": down * found.y, "x": along * found.x},
         attrs,
     )
     return scan.sortby(["y", "x"])
@@ -124,9 +138,21 @@ def _begin(rows: Sequence[Sequence[str]], mark: str) -> int | None:
         below = rows[place + 1 : place + 1 + _MIN_ROWS]
         if len(row) <= _MIN_ROWS or len(below) < _MIN_ROWS or {len(r) for r in below} != {len(row)}:
             continue
-        if _even(_numbers(row[1:], mark)) and _even(_numbers([r[0] for r in below], mark)):
+        if _even(_across(row, mark)[0]) and _even(_numbers([r[0] for r in below], mark)):
             return place
     return None
+
+
+def _across(row: Sequence[str], mark: str) -> tuple[np.ndarray | None, bool]:
+    """Return the labels of columns as numbers, and whether words in them say that they count.
+
+    File: Olympus OLS5000, "DataLine", "POS = 0", "POS = 1" (jarredclloyd/GeochemistryTools.jl).
+    """
+    counts = [_COUNT.fullmatch(cell.strip()) for cell in row[1:]]
+    numbered = [match for match in counts if match]
+    if len(numbered) == len(counts) and len({match[1] for match in numbered}) == 1:
+        return np.array([float(match[2]) for match in numbered]), True
+    return _numbers(row[1:], mark), False
 
 
 def _numbers(cells: Sequence[str], mark: str) -> np.ndarray | None:
@@ -146,7 +172,7 @@ def _even(values: np.ndarray | None) -> bool:
 
 def _map_of(rows: Sequence[Sequence[str]], mark: str) -> _Map | None:
     place = _begin(rows, mark)
-    across = None if place is None else _numbers(rows[place][1:], mark)
+    across, counted = (None, False) if place is None else _across(rows[place], mark)
     if place is None or across is None:
         return None
     body = []
@@ -160,4 +186,4 @@ def _map_of(rows: Sequence[Sequence[str]], mark: str) -> _Map | None:
         return None
     above = [" ".join(filter(None, row)) for row in rows[:place]]
     x, y = (np.linspace(side[0], side[-1], side.size) for side in (across, table[:, 0]))
-    return _Map(above, rows[place][0], x, y, table[:, 1:], mark)
+    return _Map(above, rows[place][0], x, y, table[:, 1:], mark, counted)

@@ -12,6 +12,9 @@ from tribolab.reading.clocks.faults import find_faults, rows_at_fault
 from tribolab.reading.content.newest_first import is_newest_first
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, plain_words
 from tribolab.reading.text.cells import split_name
+from tribolab.reading.unknown.columns.rotating_parts import angle_of, turns_of
+from tribolab.reading.unknown.columns.unit_and_sign import IN_SECONDS
+from tribolab.reading.unknown.model import proceeds_by_seconds
 from tribolab.units.quantities import unit_conversion
 
 if TYPE_CHECKING:
@@ -35,6 +38,19 @@ def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
         return False
     numbers[:, column.place - 1] = np.cumsum(passed)
     return True
+
+
+def in_seconds(columns: list[DraftColumn], numbers: np.ndarray) -> list[DraftColumn]:
+    """Read a clock without a unit in seconds if its steps are, and no speed depends on it."""
+    moved = any(c.used and c.quantity == "position" for c in columns)
+    if moved or angle_of(columns) is not None or turns_of(columns, numbers) is not None:
+        return columns
+    return [
+        column._replace(guessed=(), options=())
+        if column.guessed == (IN_SECONDS,) and proceeds_by_seconds(numbers[:, column.place - 1])
+        else column
+        for column in columns
+    ]
 
 
 def find_clock(

@@ -265,6 +265,11 @@ def motion_evidence(facts: Facts) -> Iterator[Evidence]:
 def torque_evidence(facts: Facts) -> Iterator[Evidence]:
     """Take a torque for the friction, and no force across the motion nor an extreme next to it."""
     torque = torque_of(facts.columns) is not None
+    if torque and not any(facts.places(name) for name in (*FRICTION, "normal_force")):
+        forces = [p for p, (_, unit, _) in enumerate(facts.bare) if unit and converts(unit, "N")]
+        for place in forces if len(forces) == 1 else ():
+            doubt = "it is the load, the only force next to a torque"
+            yield Evidence(place, "normal_force", 0.0, proposes=True, sure=True, doubt=doubt)
     ratio = facts.any_named("friction_coefficient")
     pressed = facts.places("normal_force")
     for place, (name, _, _) in enumerate(facts.bare):

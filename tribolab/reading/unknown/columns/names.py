@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import os
 import re
 
 import numpy as np
@@ -27,6 +29,8 @@ from tribolab.reading.unknown.model import DraftColumn, Kind
 _OF_RUN = {"time", "friction_force", "friction_coefficient", "normal_force", "sliding_velocity"}
 _RISES = 0.9  # share of the steps from row to row; a clock may start again
 _FIRST_WORD = re.compile(r"[\W_]+")
+_TAG_AHEAD = re.compile(r"[^\W_]+[_.:]")
+_MAX_OPEN = 20  # columns of unknown name and known unit that are compared
 _BY_UNIT = 0.6  # score of an unknown name with a known unit
 
 
@@ -45,7 +49,7 @@ def decide_by_name(
     placed: bool = False,
 ) -> tuple[Kind, list[DraftColumn]]:
     """Decide the columns of a table by their names, and with them what kind of file it is."""
-    bare = [bare_name(column) for column in columns]
+    bare = _without_tag([bare_name(column) for column in columns])
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
     run = restrict_to_proofs(_timed(bare, run, numbers), proofs, numbers)
@@ -61,6 +65,29 @@ def decide_by_name(
         mean_coefficient_evidence(layout),
     )
     return kind, decide(Facts(columns, bare, run, numbers, kind), rules)
+
+
+def _without_tag(bare: list[Bare]) -> list[Bare]:
+    """Take off what several names begin or end with, if what is left is known by its unit.
+
+    Files: loggers of the LML braking tribometer, "Fnlj(N)", "Ftlj(N)" and "lj1_C(Nm)", "lj1_F(N)"
+    (LaboratoireMecaniqueLille/Braking_Tribometer_Processing).
+    """
+    open_ = [p for p, (name, unit, _) in enumerate(bare) if unit and not matches(name, unit)]
+    for one, other in itertools.combinations(open_[:_MAX_OPEN], 2):
+        names = bare[one][0], bare[other][0]
+        ahead = _TAG_AHEAD.match(os.path.commonprefix(names))
+        tag = ahead[0] if ahead else ""
+        behind = "" if tag else os.path.commonprefix([name[::-1] for name in names])[::-1]
+        left = {
+            p: bare[p][0][len(tag) : len(bare[p][0]) - len(behind)]
+            for p in open_
+            if (tag or behind) and bare[p][0].startswith(tag) and bare[p][0].endswith(behind)
+        }
+        known = [p for p in left if left[p] and matches(left[p], bare[p][1])]
+        if len(behind) != 1 and {one, other} & {*known} and (tag or {one, other} <= {*known}):
+            return [(left[p], *said[1:]) if p in known else said for p, said in enumerate(bare)]
+    return bare
 
 
 def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:

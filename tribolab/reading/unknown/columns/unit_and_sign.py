@@ -16,6 +16,7 @@ from tribolab.units.quantities import quantity
 
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
 FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # what a coefficient is made of
+IN_SECONDS = "time is in s"  # what is guessed of a clock without a unit
 _NOISE = 0.1  # of the highest load, what a sensor without a load shows
 _BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # a unit stands there, if any
 _FACTOR = re.compile(

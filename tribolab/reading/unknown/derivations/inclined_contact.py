@@ -17,6 +17,7 @@ from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, plain_text
 from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.columns.rotating_parts import torque_of
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
@@ -78,10 +79,34 @@ def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     return named[0] if len(held) == len(named) == 1 else None
 
 
+def _has_gap(columns: Sequence[DraftColumn]) -> bool:
+    """Whether a column is the gap of a rheometer."""
+    gap = part_pattern("gap")
+    lengths = (bare_name(c) for c in columns)
+    return any(
+        gap.fullmatch(normalise_label(name)) and converts(unit or "", "m")
+        for name, unit, _ in lengths
+    )
+
+
 def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Return the guesses on the load of inclined contacts; nothing if it is known."""
+    """Return the guesses on the load of inclined contacts; nothing if it is known.
+
+    A rheometer presses along its axis, and its gap is in a column. Its own coefficient allows for
+    the angle, its normal force does not. File: an Anton Paar MCR, "Normal Force", "Torque", "Gap".
+    """
     inclined = find_inclined(layout)
     held = {column.quantity for column in columns if column.used}
+    if inclined is None and torque_of(columns) is not None and _has_gap(columns):
+        axial = axial_force_of(columns)
+        texts = (*(line[:_MAX_LINE] for line in layout.text_above()), layout.file.path.stem)
+        flat = any(part_pattern("flat_contact").search(plain_text(text)) for text in texts)
+        name = shown(bare_name(axial)[0], 30) if axial is not None else ""
+        said = (
+            f"'{name}' is the load on the contact (if it is a ball on three plates, or a ball on "
+            "disc, say so in the file's name)"
+        )
+        return [said] if axial is not None and not flat else []
     if inclined is None or "friction_coefficient" in held:
         return []
     if inclined.guess:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -58,6 +59,8 @@ from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_s
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Kind, Reason, Understood
 
+_NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")
+_MIN_NUMBERED = 24  # columns; fewer may be the channels of a logger
 _REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller unit
 
 
@@ -117,6 +120,8 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
     profile = _profile_of(layout, columns, numbers, spacing, stated=bool(unit))
     if profile is not None:
         return profile
+    if _numbers_its_points(columns, numbers):
+        return _Interpretation("table", columns)
     if has_meaning(columns):
         kind, columns = decide_by_name(layout, columns, numbers, proofs, placed=spacing.is_stated)
         if kind == "table" and find_gain(layout, columns, "friction_force") is not None:
@@ -127,6 +132,20 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
 
     kind, columns, guesses = by_behaviour(columns, numbers, (along, unit))
     return _Interpretation(kind, columns, guesses, pitched=spacing.is_stated)
+
+
+def _numbers_its_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
+    """Whether rows and columns are numbered as the points of a map are.
+
+    File: an area of an Olympus OLS5000, "POS = 0" to "POS = 1023"
+    (jarredclloyd/GeochemistryTools.jl).
+    """
+    labels = [_NUMBERED.fullmatch(column.label) for column in columns[1:]]
+    found = [match for match in labels if match]
+    if len(found) < max(_MIN_NUMBERED, len(labels)) or len({match[1] for match in found}) > 1:
+        return False
+    across = np.diff([int(match[2]) for match in found])
+    return bool((across == 1).all() and (np.diff(numbers[:, 0]) == 1).all())
 
 
 def _profile_of(
@@ -179,11 +198,12 @@ def _without_words(columns: list[DraftColumn], cells: Cells) -> list[DraftColumn
 def _of_run(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
     """Return what is understood of a run: its clock, its zero, and how often it is sampled."""
     # late: starting stays quick
-    from tribolab.reading.unknown.columns.clock import find_clock, summed
+    from tribolab.reading.unknown.columns.clock import find_clock, in_seconds, summed
 
     numbers, guesses = cells.numbers, [*found.guesses]
     columns = _without_counter(layout, found.columns, numbers)
     period = summed(columns, numbers)
+    columns = in_seconds(columns, numbers)
     columns = against_motion(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     guesses += unloaded_start_in_doubt(layout, columns)

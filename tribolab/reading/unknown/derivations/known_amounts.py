@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Given, derive
 from tribolab.reading.interpret.names import is_stroke_frequency
@@ -49,6 +51,7 @@ from tribolab.reading.unknown.header.zero import find_zero, friction_column, zer
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
 
+_STEADY = 0.05  # of its median: a rotation speed that a controller holds
 _SPEEDS = ("sliding_velocity", "rotation_speed")
 
 
@@ -105,7 +108,7 @@ def find_known(layout: Layout, understood: Understood) -> KnownRun:
     turned = crank is not None or _turns_a_crank(known)
     facts = {"crank"} if turned and not _has_track(known) else set()
     strokes = _add_strokes(known, crank="crank" in facts)
-    _add_speeds(known, pair)
+    _add_speeds(known, pair, crank="crank" in facts)
     _add_load(known)
     return KnownRun(
         known.given, frozenset(facts), known.values, strokes, doubt, crank if facts else None
@@ -265,7 +268,20 @@ def _add_strokes(known: _Facts, *, crank: bool) -> Strokes | None:
     return strokes
 
 
-def _add_speeds(known: _Facts, pair: Pair | None) -> None:
+def is_steady(understood: Understood) -> bool:
+    """Whether a column shows one rotation speed in all rows, so that one sliding speed holds.
+
+    File: a T-11 pin-on-disc tester, 191 rpm and "0.1m-s" in its name.
+    """
+    turns = [c for c in understood.columns if c.used and c.quantity == "rotation_speed"]
+    if len(turns) != 1:
+        return False
+    rates = np.abs(understood.numbers[:, turns[0].place - 1])
+    usual = float(np.nanmedian(rates)) if np.isfinite(rates).any() else 0.0
+    return usual > 0 and bool((np.abs(rates / usual - 1) < _STEADY).all())
+
+
+def _add_speeds(known: _Facts, pair: Pair | None, *, crank: bool) -> None:
     """Add an angle, a stated slide-roll ratio, and the speed or rotation that was set."""
     turning = derive("rotation_speed", known.given) is not None
     if not turning:
@@ -273,12 +289,13 @@ def _add_speeds(known: _Facts, pair: Pair | None) -> None:
         known.add_column("angle", "angle", angle)
     if "rolling_speed" in known.given:
         known.add_value("slide_roll_ratio", find_slide_roll_ratio(known.values))
-    if turning or pair is not None or "set_speed" in known.given:
+    steady = turning and not crank and not _has_track(known) and is_steady(known.understood)
+    if (turning and not steady) or pair is not None or "set_speed" in known.given:
         return
     stated = [value for value in known.values if value.name == "set_speed"]
     if len(stated) == 1:
         known.add_value("set_speed", stated[0])
-    elif not stated:
+    elif not stated and not turning:
         known.add_value("set_rotation", stated_rotation(known.values))
 
 

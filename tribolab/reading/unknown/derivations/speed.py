@@ -12,7 +12,7 @@ from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
 from tribolab.reading.runs.stroke_speed import DENSEST
 from tribolab.reading.unknown.derivations.candidate_lines import confirmed_value
-from tribolab.reading.unknown.derivations.known_amounts import KnownRun
+from tribolab.reading.unknown.derivations.known_amounts import KnownRun, is_steady
 from tribolab.reading.unknown.derivations.model import DraftedFormula, Follows, Source, SpeedBy
 from tribolab.reading.unknown.header.settings import text_settings
 from tribolab.reading.unknown.header.slip import stated_rotation
@@ -48,10 +48,11 @@ def add_speed(result: Follows, layout: Layout, understood: Understood, known: Kn
     by_rule = {
         "position": _by_position,
         "rotation": _by_rotation,
-        "set speed": _by_set_speed,
     }.get(sliding.rule.speed)
     if by_rule is not None:
         return by_rule(result, sliding)
+    if sliding.rule.speed == "set speed":
+        return _by_set_speed(result, sliding, steady=is_steady(understood))
     if sliding.rule.speed == "stroke" and known.strokes is not None:
         return _by_strokes(result, known.strokes, layout, understood, sliding)
     result = result.with_derivation(sliding)._replace(speed=SpeedBy("none"))
@@ -85,12 +86,14 @@ def _by_rotation(result: Follows, sliding: Derivation[Source]) -> Follows:
     return result.with_derivation(sliding)._replace(speed=SpeedBy("none"))
 
 
-def _by_set_speed(result: Follows, sliding: Derivation[Source]) -> Follows:
-    """Let the speed that the text states be that of the run, which is asked about."""
+def _by_set_speed(result: Follows, sliding: Derivation[Source], *, steady: bool) -> Follows:
+    """Let the speed that the text states be that of the run; ask about it unless it is steady."""
     (stated,) = (leaf.source for leaf in sliding.leaves)
     if not isinstance(stated, Amount):
         return result
-    speed = _asked(SpeedBy("set speed"), stated, "is the sliding speed all along")
+    speed = SpeedBy("set speed")
+    if not steady or _ANOTHER_SPEED.search(stated.text):
+        speed = _asked(speed, stated, "is the sliding speed all along")
     return result.with_values(stated)._replace(speed=speed)
 
 

@@ -39,6 +39,10 @@ _MARK = re.compile(
     rf"|{alternatives('header_ends_unparted')})\W*",
     re.IGNORECASE,
 )
+_LIST = re.compile(
+    r"[#%]\W*(?:(?P<units>units)|columns|column names|fields)\s*[:=]\s*(?P<list>\S.*)",
+    re.IGNORECASE,
+)
 _STEMS = frozenset(stem for word in known_words("run") for stem in (*word.stems, *word.vague))
 _SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.symbols)
 
@@ -70,6 +74,8 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
             break  # a column is named right above its numbers
         if lines[index].strip():
             above.append(index)
+    if (listed := _listed(lines, above, width)) is not None:
+        return listed
     counted = counts_its_rows(lines[start : start + 2], grammar.delimiter)
     split = {index: _cells(lines[index], grammar, width, counted) for index in above[:3]}
     fitting = {
@@ -90,6 +96,25 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
         return None
     index, (cells, aligned) = next(iter(fitting.items()))
     return Heading(index, None, cells, (), aligned)
+
+
+def _listed(lines: Sequence[str], above: Sequence[int], width: int) -> Heading | None:
+    """Return the header of comments that list the names of columns, and their units.
+
+    File: JPK NanoWizard, "# columns: height vDeflection", "# units: m N"
+    (stemarcotti/AFM-data-plot).
+    """
+    found: dict[str, tuple[int, tuple[str, ...]]] = {}
+    for index in above:
+        match = _LIST.fullmatch(lines[index].strip()) if width > 1 else None
+        cells = tuple(match["list"].replace(",", " ").split()) if match else ()
+        if match and len(cells) == width:
+            found["units" if match["units"] else "names"] = index, cells
+    if "names" not in found:
+        return None
+    names, cells = found["names"]
+    units, unit_cells = found.get("units", (None, ()))
+    return Heading(names, units, cells, unit_cells, False)
 
 
 def first_cells(line: str, delimiter: str) -> str:

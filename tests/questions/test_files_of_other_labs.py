@@ -1,0 +1,141 @@
+"""Files of public repositories nobody tuned for: each layout is that of the file named."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tribolab as tl
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import ReadError
+from tribolab.friction.segments.find import find_segments, why_no_segment
+from tribolab.reading.folder_content import contents_of
+from tribolab.reading.unknown.proposal.draft import draft_dialect
+from tribolab.reading.unknown.proposal.questions import questions
+
+ROWS = 200
+
+
+def write(file, head, columns, sep=","):
+    rows = "\n".join(sep.join(f"{x:.6g}" for x in row) for row in zip(*columns, strict=True))
+    file.write_text(head + rows + "\n", "utf-8")
+    return file
+
+
+def level(value, seed=0, rows=ROWS):
+    return value * (1 + 0.01 * np.random.default_rng(seed).standard_normal(rows))
+
+
+def test_names_that_end_in_the_tag_of_their_logger_are_known(tmp_path):
+    """LaboratoireMecaniqueLille/Braking_Tribometer_Processing, lj2.csv."""
+    head = "t(s), Fnlj(N), Ftlj(N), Tdisque1\n"
+    time = 0.01 * np.arange(ROWS)
+    file = write(tmp_path / "lj2.csv", head, [time, level(500), level(200, 1), 20 + time])
+    run = tl.read(file)
+    assert float(run.friction_force.mean() / run.normal_force.mean()) == pytest.approx(
+        0.4, rel=0.01
+    )
+
+
+def test_the_only_force_next_to_a_torque_is_asked_about_as_the_load(tmp_path):
+    """LaboratoireMecaniqueLille/Braking_Tribometer_Processing, lj1.csv."""
+    head = "t(s), lj1_C(Nm), lj1_F(N), lj1_rpm(t/min)\n"
+    time = 0.01 * np.arange(ROWS)
+    columns = [time, level(20), level(500, 1), level(1500, 2)]
+    asked = questions(draft_dialect(write(tmp_path / "lj1.csv", head, columns)))
+    assert [(q.about, "is the load" in q.guess) for q in asked] == [("column 3 'lj1_F(N)'", True)]
+
+
+@pytest.mark.parametrize(
+    ("step", "moved", "asked"), [(0.1, False, 0), (1 / 60, False, 1), (0.1, True, 1)]
+)
+def test_a_clock_of_decimal_seconds_is_asked_about_only_if_a_speed_depends_on_it(
+    step, moved, asked, tmp_path
+):
+    """Dichimanaym/Tribometer-Data-Processing, a Bruker UMT's 'Timestamp' without a unit."""
+    head = "Timestamp,DAQ.COF" + (",Position (mm)" if moved else "") + "\n"
+    time = 0.168 + step * np.arange(ROWS)
+    columns = [time, level(0.15), *([2 * time] if moved else [])]
+    draft = draft_dialect(write(tmp_path / "umt.csv", head, columns))
+    assert sum("time is in" in question.guess for question in questions(draft)) == asked
+
+
+@pytest.mark.parametrize("steady", [True, False])
+def test_a_stated_speed_needs_no_radius_if_the_rotation_is_steady(steady, tmp_path):
+    """A T-11 pin-on-disc tester: 191 rpm, and 0.1 m/s in the name of the file."""
+    head = "Time [s];Friction force [N];Rotational speed [rpm]\n"
+    turns = level(191, 1) if steady else np.linspace(20, 400, ROWS)
+    columns = [0.1 * np.arange(ROWS), level(2.5), turns]
+    file = write(tmp_path / "T11_0.1m-s_10N.csv", head, columns, ";")
+    run = tl.read(file)
+    assert (run.attrs["speed_from"] == "set speed") is steady
+    assert ("set_speed_m_s" in run.attrs) is steady
+
+
+@pytest.mark.parametrize(("contact", "asked"), [("", 1), ("Contact: ball on disc\n", 0)])
+def test_the_axial_force_of_a_rheometer_is_asked_about(contact, asked, tmp_path):
+    head = contact + "Time [s],Friction Coefficient [1],Sliding Speed [mm/s],Normal Force [N],"
+    head += "Torque [mN·m],Gap [mm]\n"
+    speed = np.geomspace(0.1, 100, ROWS)
+    columns = [np.arange(ROWS), level(0.3), speed, level(5, 1), level(7, 2), level(2, 3)]
+    draft = draft_dialect(write(tmp_path / "mcr.csv", head, columns))
+    assert sum("three plates" in question.guess for question in questions(draft)) == asked
+
+
+@pytest.mark.parametrize("filled", [True, False])
+def test_of_a_rheometer_that_writes_all_columns_the_filled_ones_count(filled, tmp_path):
+    """bsaintmichel/read-rheol, sample_Malvern.csv."""
+    head = "Shear stress(Pa);Shear rate(s-¹);Frequency(Hz);"
+    head += "Shear modulus (elastic component)(Pa);Shear modulus (viscous component)(Pa)\n"
+    rows = [f";;{f:.3f};400;60" if filled else f"{f:.3f};50;;;" for f in np.geomspace(0.1, 10, 20)]
+    (tmp_path / "kinexus.csv").write_text(head + "\n".join(rows).replace(".", ","), "utf-8")
+    if filled:
+        assert "storage  1.2e+03 Pa" in "\n".join(file_lines(tmp_path / "kinexus.csv"))
+    else:
+        with pytest.raises(ReadError, match="holds a flow curve"):
+            file_lines(tmp_path / "kinexus.csv")
+
+
+def test_a_map_that_numbers_its_points_has_the_stated_pitch(tmp_path):
+    """jarredclloyd/GeochemistryTools.jl, an Olympus OLS5000's area."""
+    heights = np.round(12 + np.add.outer(np.sin(np.arange(20)), np.cos(np.arange(30) / 4)), 3)
+    table = "DataLine," + ",".join(f"POS = {k}" for k in range(30)) + "\n"
+    table += "\n".join(f"{n}," + ",".join(f"{z:.3f}" for z in row) for n, row in enumerate(heights))
+    file = tmp_path / "area.csv"
+    file.write_text("Pitch: 0.625 um\nZResolution,0.001,[um]\n" + table + "\n", "utf-8")
+    scan = tl.read_scans(file)
+    assert scan.sizes == {"y": 20, "x": 30}
+    assert float(scan.x[1] - scan.x[0]) == pytest.approx(0.625e-6)
+    assert np.ptp(scan.height.values) == pytest.approx(1e-6 * np.ptp(heights))
+    file.write_text("ZResolution,0.001,[um]\n" + table + "\n", "utf-8")
+    with pytest.raises(ReadError, match="pitch is not stated"):
+        tl.read_scans(file)
+
+
+def test_comments_may_list_the_names_and_units_of_columns(tmp_path):
+    """stemarcotti/AFM-data-plot, force curves of a JPK NanoWizard."""
+    head = "# springConstant: 0.045\n# columns: time lateralForce normalForce\n# units: s nN uN\n"
+    columns = [0.1 * np.arange(ROWS), level(3), level(10, 1)]
+    draft = draft_dialect(write(tmp_path / "jpk.txt", head, columns, " "))
+    assert draft.labels == ["time", "lateralForce", "normalForce"]
+    assert [c.read_unit for c in draft.understood.columns] == ["s", "nN", "uN"]
+
+
+def test_strokes_with_few_samples_say_how_fast_to_record():
+    time = 0.02 * np.arange(3000)
+    phase = 2 * np.pi * 5 * time + 0.3  # 5 Hz at 50 samples a second
+    signals = {"position": 0.01 * np.sin(phase), "friction_force": 3 * np.cos(phase)}
+    run = xr.Dataset({name: ("time", x) for name, x in signals.items()}, {"time": time})
+    assert "a stroke has 5 samples" in (why := why_no_segment(find_segments(run)))
+    assert "record at 150 Hz or more" in why
+
+
+def test_a_log_that_broke_off_counts_as_its_siblings_do(tmp_path):
+    columns = [0.1 * np.arange(ROWS), level(2), level(10, 1)]
+    for number in (1, 2):
+        write(tmp_path / f"run_{number}.csv", "t [s],Ff [N],Fn [N]\n", columns)
+    (tmp_path / "run_3.csv").write_text("aborted: sensor fault\n", "utf-8")
+    (tmp_path / "notes.txt").write_text("as agreed\n", "utf-8")
+    found = {path.name: what for path, what in contents_of(sorted(tmp_path.iterdir())).items()}
+    assert found["run_3.csv"] == "run" and found["notes.txt"] == "scan"
