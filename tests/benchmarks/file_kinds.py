@@ -42,6 +42,10 @@ run with `--trust`).
 |---|---|
 | each number after its name (`t:1.5 F:2.0`) | the example below |
 | one JSON record per line | `pd.read_json(path, lines=True)` |
+| columns in JSON | `pd.DataFrame(json.load(open(path))["data"])` |
+| binary numbers after a text header | `np.fromfile(path, "<i2", offset=n).reshape(-1, 3)` |
+| a map with positions along two sides | `pd.read_csv(path, index_col=0)` (index: y) |
+| a map as one column of heights | `np.loadtxt(path, skiprows=n).reshape(rows, columns)` |
 | column names listed in lines above the numbers | `pd.read_csv(path, skiprows=n, names=names)` |
 | abbreviations explained above; names in two rows | the same |
 | steps or specimens side by side | `pd.read_csv`, then `pd.concat` of the parts |

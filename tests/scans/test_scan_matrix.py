@@ -1,7 +1,6 @@
 """Maps as text, as microscopes export them: a matrix below lines that say how large it is."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from tribolab.core.errors import ReadError
@@ -200,46 +199,6 @@ def test_a_value_for_no_height_may_stand_among_the_heights(tmp_path):
     path = tmp_path / "map.txt"
     path.write_text("dx: 1 um\ndy: 1 um\nz: um\nno data value: 0\n" + rows(HOLES, " ", hole="0"))
     np.testing.assert_allclose(read_scans(path).height.values, HOLES, rtol=1e-9)
-
-
-ABOUT = [
-    ("X e Y em mm, altura Z em µm", "Y \\ X", ";", ","),
-    ("x, y [mm]; z [um]", "", "\t", "."),
-    ("XY unit: mm\nHeight unit: um", "y/x", ",", "."),
-    ("Koordinaten x und y in mm\nHöhe in µm", "y", "\t", ","),
-]
-
-
-@pytest.mark.parametrize(("above", "corner", "delimiter", "mark"), ABOUT)
-@pytest.mark.parametrize("book", [False, True])
-@pytest.mark.parametrize("falling", [False, True])
-def test_a_map_may_have_its_positions_along_two_sides(
-    tmp_path, above, corner, delimiter, mark, book, falling
-):
-    rng = np.random.default_rng(5)
-    heights = rng.standard_normal((12, 17)).round(3)
-    x, y = 1.5 + 0.0025 * np.arange(17), 0.2 + 0.004 * np.arange(12)
-    order = slice(None, None, -1 if falling else 1)
-    table = [[corner, *x], *([a, *row] for a, row in zip(y[order], heights[order], strict=True))]
-    path = tmp_path / ("map.xlsx" if book else "map.txt")
-    if book:
-        lines = [[line] + [None] * 17 for line in above.split("\n")]
-        pd.DataFrame([*lines, *table]).to_excel(path, header=False, index=False)
-    else:
-        rows = (
-            delimiter.join(c if isinstance(c, str) else f"{c:.4f}".replace(".", mark) for c in row)
-            for row in table
-        )
-        path.write_text(above + "\n" + "\n".join(rows) + "\n", "utf-8")
-    scan = read_scans(path)
-    np.testing.assert_allclose(scan.height, 1e-6 * heights, atol=1e-12)
-    for dim, step in (("x", 2.5e-6), ("y", 4e-6)):
-        np.testing.assert_allclose(np.diff(scan[dim]), step, rtol=1e-6)
-    bare = path.with_name("bare.txt")
-    if not book:
-        bare.write_text("map\n" + "\n".join(path.read_text("utf-8").splitlines()[-13:]), "utf-8")
-        with pytest.raises(ReadError, match="does not say the unit of its positions and heights"):
-            read_scans(bare)
 
 
 @pytest.mark.parametrize(

@@ -38,9 +38,7 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
 
 
 def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
-    """Return the whole file as one table; tables in JSON are of one kind, and are steps."""
-    if len(file.tables) > 1 and file.container == "json":
-        return list(file.tables)
+    """Return the whole file as one table; of TDMS only the groups of the dialect's columns."""
     if dialect.format != "tdms":
         return [file.as_one_table()]
     groups = {column.group for column in dialect.column}

@@ -10,9 +10,7 @@ from tribolab.core.errors import ReadError
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook, refuse_cut_short
 from tribolab.reading.raw.unpacked import ZIP, of_the_file, unpacked
 from tribolab.reading.scans.formats.arrays import read_scan_arrays
-from tribolab.reading.scans.formats.column_map import read_column_map
 from tribolab.reading.scans.formats.gauges import is_gauge, read_gauge
-from tribolab.reading.scans.formats.labelled_map import read_labelled_map
 from tribolab.reading.scans.formats.matrix import read_matrix
 from tribolab.reading.scans.formats.named_arrays import has_arrays, is_npz
 from tribolab.reading.scans.formats.named_units import units_in_name
@@ -58,8 +56,7 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     -----
     tribolab reads formats that SurfaceTopography 1.27 supports in part or not at all: x3p and its
     bare XML, SMD and PRF text of softgauges, compressed Surf files, SDF of the draft standard,
-    matrices of heights with their size in a header or with positions along two sides, and named
-    arrays.
+    matrices of heights with their size in a header, and named arrays.
     """
     try:
         return _read(path, x_unit, height_unit)
@@ -90,8 +87,6 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
         return read_surfer(path, x_unit, height_unit)
     if head.startswith(ZIP) and (main := main_of(path)) is not None:
         return read_x3p(path, main)
-    if head.startswith(ZIP) and (scan := read_labelled_map(path, x_unit, height_unit)) is not None:
-        return scan
     if is_iso_xml(head):
         return read_iso_xml(path)
     if is_xml_workbook(head):
@@ -128,6 +123,4 @@ def _read_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Da
             raise
         except ReadError as error:
             raise lacking from error
-    scan = read_column_map(path) if scan is None else scan
-    scan = read_labelled_map(path, x_unit, height_unit) if scan is None else scan
     return read_foreign(path, x_unit, height_unit) if scan is None else scan
