@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -86,8 +84,8 @@ def test_metadata_of_a_table_are_settings_and_dictionaries_numbers(kind, tmp_pat
     fields = [
         f.with_metadata({"unit": units[f.name]} if f.name in units else {}) for f in plain.schema
     ]
-    setup = {"rig": "A", "track": {"radius": {"value": 20, "unit": "mm"}}}
-    table = plain.cast(pa.schema(fields, metadata={"setup": json.dumps(setup)}))
+    setup = {"rig": "A", "track radius": "20 mm"}
+    table = plain.cast(pa.schema(fields, metadata=setup))
     if kind == "parquet":
         from pyarrow import parquet
 

@@ -496,58 +496,12 @@ def test_a_heading_of_letters_of_two_bytes_is_found(tmp_path):
     assert scan.attrs["pitch_m"] == pytest.approx(5e-7)
 
 
-@pytest.mark.parametrize(
-    ("head", "heights"),
-    [
-        ("\\Samps/line: 20\n\\Lines: 20\n\\Scan Size: 5000 nm\n\"Height_Sensor(nm)\"", "nm"),
-        ("Points per line: 25\nNumber of lines: 16\nPixel size x: 250 nm\nPixel size y: 500 nm\n"
-         "Height [um]", "um"),
-    ],
-)  # fmt: skip
-def test_a_column_of_heights_row_after_row_is_a_map(tmp_path, head, heights):
-    (tmp_path / "a.txt").write_text(head + "\n" + "\n".join(f"{z:.3f}" for z in HEIGHTS) + "\n")
+def test_an_image_in_one_column_of_a_force_microscope_is_a_map(tmp_path):
+    head = '\\Samps/line: 20\n\\Lines: 20\n\\Scan Size: 5000 nm\n"Height_Sensor(nm)"\n'
+    (tmp_path / "a.txt").write_text(head + "\n".join(f"{z:.3f}" for z in HEIGHTS) + "\n")
     scan = read_scans(tmp_path / "a.txt")
-    shape, steps = ((20, 20), (2.5e-7, 2.5e-7)) if heights == "nm" else ((16, 25), (5e-7, 2.5e-7))
-    assert scan.height.shape[-2:] == shape
-    scale = 1e-9 if heights == "nm" else 1e-6
-    np.testing.assert_allclose(scan.height.values.reshape(shape), scale * HEIGHTS.reshape(shape))
-    for dim, step in zip("yx", steps, strict=True):
-        np.testing.assert_allclose(np.diff(scan[dim]), step)
-
-
-MAP_HEAD = (
-    "Points per line: 25\nNumber of lines: 16\nPixel size x: 250 nm\nPixel size y: 500 nm\n{}\n"
-    "Height [um]"
-)
-
-
-@pytest.mark.parametrize(
-    ("order", "by_columns"),
-    [
-        ("Order: column by column", True),
-        ("Volgorde: kolom voor kolom", True),
-        ("Reihenfolge: Zeile für Zeile", False),
-        ("data order: column-major", True),
-        ("顺序: 逐列", True),
-    ],
-)
-def test_heights_of_a_map_may_stand_column_after_column(tmp_path, order, by_columns):
-    heights = HEIGHTS.reshape(16, 25)
-    column = (heights.T if by_columns else heights).ravel()
-    text = MAP_HEAD.format(order) + "\n" + "\n".join(f"{z:.3f}" for z in column) + "\n"
-    (tmp_path / "a.txt").write_text(text, "utf-8")
-    scan = read_scans(tmp_path / "a.txt")
-    np.testing.assert_allclose(scan.height.values.reshape(16, 25), 1e-6 * heights)
-    for dim, step in zip("yx", (5e-7, 2.5e-7), strict=True):
-        np.testing.assert_allclose(np.diff(scan[dim]), step)
-
-
-@pytest.mark.parametrize("order", ["Order: rows, meandering", "Reihenfolge: y zuletzt"])
-def test_an_order_of_heights_that_is_not_known_is_refused(tmp_path, order):
-    text = MAP_HEAD.format(order) + "\n" + "\n".join(f"{z:.3f}" for z in HEIGHTS) + "\n"
-    (tmp_path / "a.txt").write_text(text, "utf-8")
-    with pytest.raises(ReadError, match="the order of the heights is not understood: '.*'"):
-        read_scans(tmp_path / "a.txt")
+    np.testing.assert_allclose(scan.height.values.reshape(20, 20), 1e-9 * HEIGHTS.reshape(20, 20))
+    np.testing.assert_allclose([scan.x[1], scan.y[1]], 2.5e-7)
 
 
 def test_a_column_of_other_than_the_stated_number_of_heights_is_no_map(tmp_path):

@@ -28,26 +28,11 @@ _MIN_COLUMNS = 8  # least columns of a matrix; fewer may be a table
 _MAX_OF_LINE = 24  # numbers of one profile in a line
 _ROWS = 4  # rows of equal width needed to recognise a matrix
 _MARKS = frozenset(
-    (
-        "",
-        "bad",
-        "nan",
-        "-nan",
-        "n/a",
-        "na",
-        "inf",
-        "-inf",
-        "null",
-        "none",
-        "invalid",
-        "void",
-        "no data",
-        "nodata",
-    )
+    ("", "no data", *"bad nan -nan n/a na inf -inf null none invalid void nodata".split())
 )
 _SIGNS = frozenset("*-#?")
 _ENCODINGS = ("utf-8-sig", "cp932", "gb18030", "latin-1")
-GRAMMARS = (
+_GRAMMARS = (
     *(("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (None, "."), (None, ",")),
 )
 
@@ -91,10 +76,10 @@ def read_matrix(
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    if not any(_matrix(text.splitlines()) for text in texts_of(head)):
+    if not any(_matrix(text.splitlines()) for text in _texts_of(head)):
         return None
     found: tuple[_Matrix, MapHeader] | None = None
-    for text in texts_of(path.read_bytes()):
+    for text in _texts_of(path.read_bytes()):
         matrix = _matrix(text.splitlines())
         if matrix is None:
             continue
@@ -125,8 +110,13 @@ def read_matrix(
     if header.height is None:
         header = header._replace(height=unit_of_range(header, heights))
     _refuse(path, matrix, header)
+    return map_of(heights, header, "matrix of heights, by its header")
+
+
+def map_of(heights: np.ndarray, header: MapHeader, instrument: str) -> xr.Dataset:
+    """Return a map of heights as in the file (y, x), without sentinels, and with its header."""
     assert header.dx and header.dy and header.height  # otherwise refused
-    attrs = {"instrument": "matrix of heights, by its header"}
+    attrs = {"instrument": instrument}
     attrs |= {"doubtful": header.doubt} if header.doubt else {}
     if missing := _remove_sentinels(heights, header):
         attrs["taken_for_missing"] = missing
@@ -149,7 +139,7 @@ def _remove_sentinels(heights: np.ndarray, header: MapHeader) -> str:
     return "; ".join(marks)
 
 
-def texts_of(content: bytes) -> list[str]:
+def _texts_of(content: bytes) -> list[str]:
     """Return the content in each encoding that fits, usually only the first."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return [content.decode("utf-16", "replace")]
@@ -173,8 +163,8 @@ def _matrix(lines: list[str]) -> _Matrix | None:
         first = lines[start : start + _ROWS]
         if len(first) < _ROWS or not first[0].strip():
             continue
-        for delimiter, mark in GRAMMARS:
-            columns = len(cells_of(first[0], delimiter))
+        for delimiter, mark in _GRAMMARS:
+            columns = len(_cells_of(first[0], delimiter))
             trial = _Matrix(lines[:start], [], delimiter, mark, columns)
             if columns < _ROWS or any(_numbers(line, trial) is None for line in first):
                 continue
@@ -185,7 +175,7 @@ def _matrix(lines: list[str]) -> _Matrix | None:
 def _is_named(matrix: _Matrix) -> bool:
     """Whether names or positions of columns are above the matrix."""
     last = next((line for line in reversed(matrix.above) if line.strip()), "")
-    return len(cells_of(last, matrix.delimiter)) >= max(_ROWS, matrix.columns - 1)
+    return len(_cells_of(last, matrix.delimiter)) >= max(_ROWS, matrix.columns - 1)
 
 
 def _complete(lines: Sequence[str], like: _Matrix) -> _Matrix:
@@ -203,12 +193,12 @@ def _complete(lines: Sequence[str], like: _Matrix) -> _Matrix:
 
 def _is_part(line: str, like: _Matrix) -> bool:
     """Whether a line is a shorter row of numbers."""
-    cells = cells_of(line, like.delimiter) if line.strip() else []
+    cells = _cells_of(line, like.delimiter) if line.strip() else []
     part = like._replace(columns=len(cells))
     return 0 < len(cells) < like.columns and _numbers(line, part) is not None
 
 
-def cells_of(line: str, delimiter: str | None) -> list[str]:
+def _cells_of(line: str, delimiter: str | None) -> list[str]:
     """Return the cells of a line, without an empty one after a final delimiter."""
     cells = [cell.strip().strip('"') for cell in line.split(delimiter)]
     return cells[:-1] if delimiter is not None and line.rstrip().endswith(delimiter) else cells
@@ -216,7 +206,7 @@ def cells_of(line: str, delimiter: str | None) -> list[str]:
 
 def _numbers(line: str, like: _Matrix) -> list[float] | None:
     """Return the numbers of a row, with NaN for missing heights; None for any other line."""
-    cells = cells_of(line, like.delimiter)
+    cells = _cells_of(line, like.delimiter)
     if len(cells) == like.columns - 1 and like.delimiter is not None:
         cells.append("")  # the last height is missing
     if len(cells) != like.columns:
@@ -226,11 +216,11 @@ def _numbers(line: str, like: _Matrix) -> list[float] | None:
             return [*map(float, cells)]
         except ValueError:
             pass
-    values = [value_of(cell, like.mark) for cell in cells]
+    values = [_value_of(cell, like.mark) for cell in cells]
     return None if None in values else [value for value in values if value is not None]
 
 
-def value_of(cell: str, mark: str) -> float | None:
+def _value_of(cell: str, mark: str) -> float | None:
     """Return the number in a cell, NaN for a missing height, None for any other text."""
     try:
         return float(cell if mark == "." else cell.replace(".", "x").replace(mark, "."))

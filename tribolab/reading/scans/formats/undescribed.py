@@ -14,6 +14,7 @@ from tribolab.reading.scans.formats.gauges import is_gauge, read_gauge
 from tribolab.reading.scans.formats.matrix import read_matrix
 from tribolab.reading.scans.formats.named_arrays import has_arrays, is_npz
 from tribolab.reading.scans.formats.named_units import units_in_name
+from tribolab.reading.scans.formats.nanoscope import is_nanoscope, read_nanoscope
 from tribolab.reading.scans.formats.profilometers import MissingUnitError, read_foreign
 from tribolab.reading.scans.formats.sdf import as_standard, is_sdf_draft
 from tribolab.reading.scans.formats.sur import is_sur, plain_sur
@@ -28,7 +29,7 @@ def is_own_text(path: Path) -> bool:
     """Whether a file is text of a format read by tribolab, whose errors are specific."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    named = is_surfer(head) or is_zygo_xyz(head)
+    named = is_surfer(head) or is_zygo_xyz(head) or is_nanoscope(head)
     return named or is_iso_xml(head) or is_gauge(head)
 
 
@@ -94,6 +95,8 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
         raise ReadError("no sheet of this workbook can be read as a profile", where=path)
     if is_gauge(head):
         return read_gauge(path)
+    if is_nanoscope(head):
+        return read_nanoscope(path)
     if b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return _read_text(path, x_unit, height_unit)
     return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)
