@@ -28,8 +28,6 @@ def written(folder: Path, head: str, names: str, *columns: np.ndarray, name: str
     [
         "Fx = vertical (normal) force; Fy = radial; Fz = tangential\nSliding speed: 20 mm/s",
         "Fx = Normalkraft; Fy = Querkraft; Fz = Reibkraft\nGleitgeschwindigkeit: 20 mm/s",
-        "Fx: siła pionowa | Fy: siła poprzeczna | Fz: siła styczna\nSliding speed: 20 mm/s",
-        "Fx=垂直方向; Fy=横方向; Fz=摩擦\nSliding speed: 20 mm/s",
     ],
 )
 def test_axes_are_what_the_text_says_and_not_what_their_names_usually_mean(

@@ -23,23 +23,6 @@ def _file(folder: Path, head: list[str], names: str, *columns: np.ndarray, name:
     return file
 
 
-def test_a_legend_above_the_table_says_the_units_of_its_columns(tmp_path: Path) -> None:
-    head = [
-        "* t - time of the logger [s];  s - position of the carriage [mm]",
-        "* Fx - longitudinal force [N] (reaction, negative), Fz: vertical force (N)",
-    ]
-    rows = [
-        f"{t:.2f}   {s:.3f}  {-f:.4f}  {-n:.4f}"
-        for t, s, f, n in zip(TIME, WAY, FRICTION, LOAD, strict=True)
-    ]
-    file = tmp_path / "legend.prn"
-    file.write_text("\n".join([*head, "* t s Fx Fz", *rows]) + "\n", encoding="utf-8")
-    run = tl.read(file)
-    np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-3)  # against the motion
-    np.testing.assert_allclose(run.normal_force, LOAD, atol=1e-3)
-    np.testing.assert_allclose(run.position, WAY / 1e3, atol=1e-6)
-
-
 def test_what_turns_is_a_crank_where_the_text_says_so(tmp_path: Path) -> None:
     time = np.arange(0, 30, 0.01)
     force = 2 * np.sign(np.cos(2 * np.pi * time)) + 0.05 * np.sin(17 * time)

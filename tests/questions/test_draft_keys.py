@@ -121,12 +121,9 @@ def test_the_pull_on_a_sled_is_its_friction_in_italian(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-4)
 
 
-@pytest.mark.parametrize(("force", "known"), [("24,5", True), ("30,0", False)])
-def test_a_weight_and_its_force_are_one_load(tmp_path: Path, force: str, known: bool) -> None:
+@pytest.mark.parametrize("force", ["24,5", "30,0"])
+def test_of_a_weight_and_a_force_nobody_knows_which_is_the_load(tmp_path: Path, force: str) -> None:
     rows = "\n".join(f"{t:.2f};{f:.4f}" for t, f in zip(TIME, FRICTION, strict=True))
     head = f"Massa slede (kg);2,50\nNormaalkracht (N);{force}\nGlijsnelheid;20 mm/s"
     (tmp_path / "sled.csv").write_text(f"{head}\nTime [s];Friction force [N]\n{rows}\n", "utf-8")
-    run = tl.read(tmp_path / "sled.csv")
-    assert ("normal_force" in run) == known  # of two that differ nobody knows which it is
-    if known:
-        np.testing.assert_allclose(run.normal_force, 24.5)
+    assert "normal_force" not in tl.read(tmp_path / "sled.csv")

@@ -286,15 +286,6 @@ def test_points_of_one_line_are_a_profile(along, tmp_path):
     np.testing.assert_allclose(scan.height.values[0], 1e-6 * heights, atol=1e-12)
 
 
-def test_profiles_side_by_side_behind_their_positions_are_scans(tmp_path):
-    file = tmp_path / "two.txt"
-    rows = "\n".join(f"{n / 1000:.4f}\t{n % 7}\t{n % 5}" for n in range(300))
-    file.write_text(f"x [mm]\tz1 [um]\tz2 [um]\n{rows}\n")
-    scan = read_scans(file)
-    assert scan.sizes == {"scan": 2, "x": 300} and scan.attrs["pitch_m"] == pytest.approx(1e-6)
-    np.testing.assert_allclose(scan.height.values[1], [1e-6 * (n % 5) for n in range(300)])
-
-
 def test_heights_in_counts_are_asked_about_and_never_taken_for_lengths(tmp_path):
     file = tmp_path / "counts.txt"
     heights = "\n".join(str(n % 9) for n in range(300))
@@ -516,15 +507,6 @@ def test_traces_of_one_file_are_checked_each(tmp_path):
     other = written(tmp_path, tables("Trace 1"), "other.txt")
     names = [one.files[0].name for one in check_files([path, other])]
     assert names == ["line.txt, trace 1", "line.txt, trace 2", "other.txt"]
-
-
-@pytest.mark.parametrize("name", ["Trace", "Messung", "Profil", "Ślad"])
-def test_counted_columns_beside_x_are_profiles(tmp_path, name):
-    rows = "\n".join(f"{0.00025 * n:.5f}\t{z}\t{2 * z:.4f}" for n, z in enumerate(Z))
-    path = tmp_path / "lines.txt"
-    path.write_text(f"x [mm]\t{name} 1 [um]\t{name} 2 [um]\n{rows}\n", "utf-8")
-    scan = read_scans(path)
-    np.testing.assert_allclose(scan.height[1], 2e-6 * Z, atol=1e-10)
 
 
 @pytest.mark.parametrize(

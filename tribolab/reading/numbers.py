@@ -14,6 +14,7 @@ _UNIT = (
     rf"|[^\W\d_][^\s;,:()\[\]\"，；：（）、。=≙≈≅→]*(?:\s?{_A_PER}\s?[^\W\d_]\w*)?"
 )
 _NUMBER = re.compile(rf"(?<![\d.,A-Za-z_])(?P<number>{NUMBER})(?:\s{{0,3}}(?P<unit>{_UNIT}))?")
+_SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 _PER = re.compile(rf"\s?{_A_PER}\s?")
 
 
@@ -71,3 +72,18 @@ def numbers_in(text: str) -> tuple[Number, ...]:
         )
         for match in _NUMBER.finditer(text)
     )
+
+
+def escaped(text: str) -> str:
+    """Return text as a readable pattern: blanks remain blanks."""
+    return _SPECIAL.sub(r"\\\1", text).replace("\t", r"\t")
+
+
+def number_pattern(before: str) -> str:
+    """Return a pattern for the number after a line's beginning, in which numbers may vary.
+
+    >>> re.search(number_pattern("# cell 2: "), "# cell 3: 4.5 N")[1]
+    '4.5'
+    """
+    parts = re.split(r"\d[\d.,]*", before.strip())
+    return r"^\s*" + r"[\d.,]+".join(map(escaped, parts)) + rf"\s*({NUMBER})"

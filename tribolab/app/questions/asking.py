@@ -29,7 +29,6 @@ from tribolab.reading.unknown.derivations.candidate_lines import (
 )
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.missing_inputs import lacking
-from tribolab.reading.unknown.header.load import stated_number
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import Agreed, DraftColumn, Reason, Understood, other_units
 from tribolab.reading.unknown.proposal.answers import column_of, corrected, fits
@@ -178,7 +177,7 @@ def _ask_for_lengths(
         follows = what_follows(layout, understood)
     guessed = [value for value in follows.values if value.guess]
     if guessed or "track_radius" in lacks:
-        guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
+        guess = f"{guessed[0].value:.6g} {guessed[0].unit}" if guessed else _NONE
         lines = candidate_lines(layout, follows, "track_radius")
         value = likely_value(layout, follows, "track_radius")
         question = "what is the radius of the track, with its unit"

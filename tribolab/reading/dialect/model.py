@@ -6,6 +6,7 @@ them is generated from these classes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -23,7 +24,6 @@ from tribolab.reading.dialect.file_layout import (
     Text,
 )
 from tribolab.reading.dialect.formula import names_in, parse_formula
-from tribolab.reading.dialect.pitch_rule import check_pitch
 from tribolab.reading.dialect.speed_rule import Speed
 from tribolab.reading.dialect.time_rule import Time
 from tribolab.reading.dialect.uncertainty import Uncertainty
@@ -132,7 +132,7 @@ class Dialect(Strict):
                         f"column '{column.key}': in a file without a header it needs "
                         "position and unit"
                     )
-        check_pitch(self.pitch, self.pitch_value, self.length_value, self.value, names)
+        _check_pitch(self.pitch, self.pitch_value, self.length_value, self.value, names)
         for key, value in self.speed.values_named.items():
             if value not in {v.name for v in self.value} | {c.symbol for c in self.column}:
                 raise ValueError(
@@ -164,3 +164,26 @@ def _check_formulas(
         if rule.quantity in sure:
             raise ValueError(f"'{rule.quantity}' is given by a column and by a formula")
         known.add(rule.quantity)
+
+
+def _check_pitch(
+    pitch: str | None,
+    pitch_value: str | None,
+    length_value: str | None,
+    values: Sequence[Value],
+    columns: Sequence[str],
+) -> None:
+    """Raise if a pitch cannot define positions."""
+    keys = {"pitch": pitch, "pitch_value": pitch_value, "length_value": length_value}
+    given = {key: text for key, text in keys.items() if text is not None}
+    if not given:
+        return
+    if len(given) > 1:
+        raise ValueError(f"give either {' or '.join(given)}, not all of them")
+    if "height" not in columns or "x" in columns or "y" in columns:
+        raise ValueError("pitch is for a column of 'height' without one of 'x'")
+    [(key, text)] = given.items()
+    if key == "pitch":
+        positive(text, "m", "pitch")
+    elif not any(v.name == text and v.unit is not None and v.si_unit == "m" for v in values):
+        raise ValueError(f"{key}: there is no value '{shown(text)}' with a unit and to = 'm'")

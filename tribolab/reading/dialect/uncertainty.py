@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 from typing import Annotated, Literal, NamedTuple, Self
 
-from pydantic import AfterValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from tribolab.core.errors import TribolabError, UnitError, shown
 from tribolab.core.untyped import Json
-from tribolab.reading.dialect.switches import NoSwitches
+from tribolab.reading.dialect.checked_text import Strict
 from tribolab.units.conversion import conversion, to_si
 
 Distribution = Literal["standard", "expanded", "half-width", "triangular", "step"]
@@ -44,11 +44,7 @@ class Known(NamedTuple):
     source: str
 
 
-class _Strict(NoSwitches):
-    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
-
-
-class StatedUncertainty(_Strict):
+class StatedUncertainty(Strict):
     """One uncertainty, as a certificate, a data sheet or a measurement states it."""
 
     value: str = Field(
@@ -167,7 +163,7 @@ NAMES: dict[str, tuple[str, Varies]] = {
 MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus", "temperature", "water_content")
 
 
-class Uncertainty(_Strict):
+class Uncertainty(Strict):
     """Uncertainties of the instrument, the mount and the medium."""
 
     friction_gain: _Relative = Field(

@@ -53,6 +53,11 @@ class Amount(NamedTuple):
         match = re.search(self.pattern, self.text)
         return decimal(match[1]) if match else float("nan")
 
+    @property
+    def value(self) -> float:
+        """Number times its scale, in its unit; NaN if it is invalid."""
+        return self.scale * self.number
+
     def means(self, *concepts: str) -> bool:
         """Whether its name in the file matches one of some concepts of settings.toml."""
         return any(key_pattern(concept).search(self.key) for concept in concepts)

@@ -5,20 +5,17 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tribolab.reading.interpret.patterns import number_pattern
 from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.reading.lexicon.lexicon import (
     CLAUSE_END,
     alternatives,
     key_pattern,
-    mentions,
     normalise_label,
     plain_text,
     plain_words,
     text_pattern,
 )
-from tribolab.reading.numbers import NUMBER, Number, decimal, numbers_in
-from tribolab.units.spellings import WEIGHTS
+from tribolab.reading.numbers import NUMBER, Number, decimal, number_pattern, numbers_in
 
 LONGEST_LINE = 300  # characters of a line that are inspected
 _MAX_OF_LINE = 8  # most numbers of a line
@@ -108,32 +105,6 @@ def label_of(line: str) -> str:
     """
     label = _LABEL.match(line[:LONGEST_LINE])
     return normalise_label(label["label"]) if label else ""
-
-
-def weight_on_lever(line: str) -> float:
-    """Return the lever ratio that a line states together with a weight; 0 without one.
-
-    Examples
-    --------
-    >>> weight_on_lever("Charge: masses 5 kg, rapport de levier 10:1")
-    10.0
-    >>> weight_on_lever("dead weight 2 kg on lever, ratio 1:5"), weight_on_lever("Lever 1:5")
-    (5.0, 0.0)
-    >>> weight_on_lever("Load 20 N (lever 1:5)")
-    0.0
-    """
-    line = line[:LONGEST_LINE]
-    numbers = numbers_in(line)
-    if sum(number.unit.lower() in WEIGHTS for number in numbers) != 1 or not mentions(
-        "lever", line
-    ):
-        return 0.0
-    if ratios := ratios_in(line):
-        sides = ratios[0].one, ratios[0].other
-        return max(sides) / min(sides) if min(sides) > 0 else 0.0
-    signs = re.compile(rf"{alternatives('ratio_sign')}\W{{0,3}}$", re.IGNORECASE)
-    times = (n.value for n in numbers if not n.unit and signs.search(line[: n.start]))
-    return next(times, 0.0)
 
 
 def ratios_in(line: str) -> list[Ratio]:

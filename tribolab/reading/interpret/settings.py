@@ -8,13 +8,11 @@ from collections.abc import Mapping
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches, split_unit
-from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.interpret.phrases import (
     LONGEST_LINE,
     Phrase,
     label_of,
     phrases,
-    weight_on_lever,
 )
 from tribolab.reading.interpret.unit_texts import (
     DIMENSIONS,
@@ -34,7 +32,7 @@ from tribolab.reading.lexicon.lexicon import (
     text_pattern,
     without_role,
 )
-from tribolab.reading.numbers import NUMBER
+from tribolab.reading.numbers import NUMBER, escaped
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 
 _MAX_ENTRY = 1000  # characters of a line with a key, as searches take quadratic time
@@ -242,7 +240,6 @@ def _of_phrase(phrase: Phrase) -> Amount | None:
         phrase = phrase._replace(key=label)  # "Load: dead weights of 5 kg"
     if "tip_radius" in wanted and key_pattern("tip_radius").search(label + phrase.key):
         phrase = phrase._replace(key=label + phrase.key)  # "Stylus: radius 2 um"
-    lever = weight_on_lever(phrase.line) if weight else 0.0
     speed = dimension == "m/s"
     made = Amount(
         "set_speed" if speed else _name(phrase.key),
@@ -251,7 +248,6 @@ def _of_phrase(phrase: Phrase) -> Amount | None:
         None if weight or speed else dimension,
         phrase.line,
         own_unit=phrase.unit,
-        scale=lever or 1.0,
         key=phrase.key,
     )
     turns = "rotation_speed" in wanted and _STEP.fullmatch(phrase.key)  # "Step 2: 30 rpm"

@@ -50,34 +50,6 @@ def _trace_name(name: str) -> bool:
     return key_pattern("trace_name").search(normalise_label(bare)) is not None
 
 
-def side_by_side_profiles(columns: list[DraftColumn]) -> list[DraftColumn] | None:
-    """Return positions and the profiles side by side behind them: x [mm], z1 [um], z2 [um]."""
-    if len(columns) < 3 or not side_by_side(columns[1:]):
-        return None
-    name, unit, say = bare_name(columns[0])
-    along = matches(name, unit, scan=True)
-    bare = [bare_name(column) for column in columns[1:]]
-    numberless = [re.sub(r"[\W_]*\d+$", "", name) for name, _, _ in bare]
-    heights = [
-        matches(name, unit, scan=True) for name, (_, unit, _) in zip(numberless, bare, strict=True)
-    ]
-    if not along or along[0].quantity != "x" or unit is None:
-        return None
-    traces = all(_trace_name(name) for name, _, _ in bare)
-    if not traces and not all(options and options[0].quantity == "height" for options in heights):
-        return None
-    if any(unit is None for _, unit, _ in bare):
-        return None
-    x = columns[0]._replace(quantity="x", unit=unit if say else None, used=True)
-    return [
-        x,
-        *(
-            column._replace(quantity="height", unit=unit if say else column.unit, used=True)
-            for column, (_, unit, say) in zip(columns[1:], bare, strict=True)
-        ),
-    ]
-
-
 def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftColumn:
     """Take a column without a known name for heights: what a pitch before it is of."""
     name, own, say = bare_name(column)

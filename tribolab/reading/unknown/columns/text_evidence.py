@@ -27,8 +27,7 @@ from tribolab.reading.unknown.columns.evidence import (
 )
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import torque_of
-from tribolab.reading.unknown.header.lengths import find_arm
-from tribolab.reading.unknown.header.load import find_load, stated_number
+from tribolab.reading.unknown.header.run_amounts import find_arm, find_load
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason
@@ -60,13 +59,11 @@ def legend_evidence(layout: Layout) -> Rule:
             if not about:
                 continue
             said = f"the text names it: '{shown(about, 40)}'"
-            named = _explained_force(about)
-            if named in BOTH_FORCES:
-                yield Evidence(place, named, _STATED, said, proposes=True, sure=True)
-                other = BOTH_FORCES[named == BOTH_FORCES[0]]
+            options = [o.quantity for o in matches(about, "N") if o.score >= _KNOWN_SHARE]
+            if options and options[0] in BOTH_FORCES:
+                yield Evidence(place, options[0], _STATED, said, proposes=True, sure=True)
+                other = BOTH_FORCES[options[0] == BOTH_FORCES[0]]
                 yield Evidence(place, other, RULED_OUT, said)
-            elif named:
-                yield Evidence(place, "", RULED_OUT, said)
             else:
                 yield Evidence(place, "", 0.0, doubt=f"{said}, in words that are not known")
 
@@ -89,27 +86,6 @@ def _explanation(name: str, lines: Sequence[str]) -> str:
         if match := after.search(line) or before.search(line):
             return match["about"].strip()
     return ""
-
-
-def _explained_force(about: str) -> str:
-    """Return the force that an explanation means; "across" the motion, "" if it is not known.
-
-    >>> _explained_force("vertical (normal) force"), _explained_force("tangential")
-    ('normal_force', 'friction_force')
-    >>> _explained_force("radial"), _explained_force("left")
-    ('across', '')
-    """
-    words = normalise_label(about)
-    patterns = {
-        "normal_force": "force_presses",
-        "friction_force": "force_along",
-        "across": "force_across",
-    }
-    kinds = [kind for kind, part in patterns.items() if part_pattern(part).search(words)]
-    if len(kinds) == 1:
-        return kinds[0]
-    options = [option for option in matches(about, "N") if option.score >= _KNOWN_SHARE]
-    return options[0].quantity if options and options[0].quantity in kinds else ""
 
 
 def stated_load_evidence(layout: Layout) -> Rule:
@@ -183,7 +159,7 @@ def _is_load_of_tester(facts: Facts, place: int) -> bool:
 
 def _share_of_load(facts: Facts, place: int, load: Amount) -> float:
     """Return what a cell reads under load, in terms of the stated load."""
-    stated = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
+    stated = load.value * unit_conversion(load.unit or "N", "normal_force")[0]
     values = facts.numbers[:, place]
     read = np.abs(values[np.isfinite(values)])
     read = read * unit_conversion(facts.bare[place][1] or "N", "normal_force")[0]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.unknown.derivations.model import Follows
-from tribolab.reading.unknown.header.load import find_load, stated_number
+from tribolab.reading.unknown.header.run_amounts import find_load
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import Agreed, Understood
@@ -26,13 +26,13 @@ def candidate_lines(layout: Layout, follows: Follows, lack: str) -> str:
 
 def likely_value(layout: Layout, follows: Follows, lack: str) -> Amount | None:
     """Return what these lines state; None if they state nothing, or two amounts."""
-    values = [value for value in _perhaps(layout, follows, lack) if stated_number(value) > 0]
+    values = [value for value in _perhaps(layout, follows, lack) if value.value > 0]
     return values[0] if len({amount_of(value) for value in values}) == 1 else None
 
 
 def amount_of(value: Amount | None) -> str:
     """Return what a value states, as "22.5 mm"; "" of none."""
-    return "" if value is None else f"{stated_number(value):.6g} {value.own_unit}"
+    return "" if value is None else f"{value.value:.6g} {value.own_unit}"
 
 
 def confirmed_value(

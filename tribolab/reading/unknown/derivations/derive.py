@@ -14,7 +14,6 @@ from tribolab.reading.unknown.derivations.candidate_lines import find_stated_loa
 from tribolab.reading.unknown.derivations.known_amounts import KnownRun, find_known
 from tribolab.reading.unknown.derivations.model import SAYS_FRICTION, SAYS_LOAD, Follows, Source
 from tribolab.reading.unknown.derivations.speed import add_speed
-from tribolab.reading.unknown.header.load import stated_number
 from tribolab.reading.unknown.header.stroke_settings import stated_strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
@@ -126,7 +125,7 @@ def _is_held(load: Amount, understood: Understood) -> bool:
     scale, _ = unit_conversion(columns[0].read_unit or "N", "normal_force")
     values = np.abs(columns[0].scale * scale * understood.numbers[:, columns[0].place - 1])
     pressed = values[values > _PRESSED * np.nanmax(values, initial=0.0)]
-    set_to = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
+    set_to = load.value * unit_conversion(load.unit or "N", "normal_force")[0]
     if not pressed.size or not set_to > 0:
         return False
     low, high = np.nanquantile(pressed, (0.05, 0.95)) / set_to

@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.interpret.patterns import number_pattern
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.numbers import numbers_in
+from tribolab.reading.numbers import number_pattern, numbers_in
 from tribolab.reading.unknown.columns.labels import bare_name
-from tribolab.reading.unknown.header.calibration_lines import states_raw_zero
+from tribolab.reading.unknown.header.factors import states_raw_zero
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 

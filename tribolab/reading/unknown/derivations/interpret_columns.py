@@ -14,13 +14,13 @@ from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.unknown.columns.cells import Cells, read_cells
+from tribolab.reading.unknown.columns.clock import find_clock, in_seconds, summed
 from tribolab.reading.unknown.columns.coefficient import disagreement, force_or_ratio
 from tribolab.reading.unknown.columns.dates import take_dates
 from tribolab.reading.unknown.columns.heights import (
     as_heights,
     in_stated_unit,
     side_by_side,
-    side_by_side_profiles,
 )
 from tribolab.reading.unknown.columns.labels import bare_name, labelled
 from tribolab.reading.unknown.columns.names import decide_by_name, has_meaning
@@ -36,24 +36,26 @@ from tribolab.reading.unknown.columns.sign_against_motion import against_motion
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES
 from tribolab.reading.unknown.derivations.gains import find_gain
 from tribolab.reading.unknown.derivations.inclined_contact import guesses_of_inclined
-from tribolab.reading.unknown.derivations.load_cells import loads_that_add
+from tribolab.reading.unknown.derivations.known_amounts import loads_that_add
 from tribolab.reading.unknown.derivations.nodata_values import take_stated_missing
 from tribolab.reading.unknown.derivations.two_bodies import (
     exclude_surface_speeds,
     find_surface_speeds,
 )
 from tribolab.reading.unknown.header.factors import unapplied_factors, unapplied_height_factors
-from tribolab.reading.unknown.header.lengths import confirm_lever_arm_force
-from tribolab.reading.unknown.header.load import find_load
 from tribolab.reading.unknown.header.profiles import (
     find_height_unit,
     find_pitch,
     find_profile_length,
     find_unit_along,
 )
+from tribolab.reading.unknown.header.run_amounts import (
+    as_entrainment_speed,
+    confirm_lever_arm_force,
+    find_load,
+)
 from tribolab.reading.unknown.header.sampling import find_pace, find_sampling
 from tribolab.reading.unknown.header.settings import numeric_settings
-from tribolab.reading.unknown.header.slip import as_entrainment_speed
 from tribolab.reading.unknown.header.stroke_settings import find_stroke_length
 from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_start_in_doubt
 from tribolab.reading.unknown.layout.text_layout import Layout
@@ -156,14 +158,12 @@ def _profile_of(
     *,
     stated: bool,
 ) -> _Interpretation | None:
-    """Return columns as profiles if they are side by side, or behind positions."""
+    """Return columns as profiles if they are heights alone, or side by side."""
     alone = layout.width == 1 and _may_be_heights(columns[0])
     if spacing.is_stated and (alone or side_by_side(columns)):
         likely = _likely_unit(numbers, spacing.pitch)
         columns = [as_heights(column, stated=stated, unit=likely) for column in columns]
         return _Interpretation("scan", columns, pitched=True)
-    if (placed := side_by_side_profiles(columns)) is not None:
-        return _Interpretation("scan", placed, pitched=spacing.is_stated)
     return None
 
 
@@ -197,71 +197,66 @@ def _without_words(columns: list[DraftColumn], cells: Cells) -> list[DraftColumn
 
 def _of_run(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
     """Return what is understood of a run: its clock, its zero, and how often it is sampled."""
-    # late: starting stays quick
-    from tribolab.reading.unknown.columns.clock import find_clock, in_seconds, summed
-
-    numbers, guesses = cells.numbers, [*found.guesses]
+    numbers = cells.numbers
     columns = _without_counter(layout, found.columns, numbers)
     period = summed(columns, numbers)
     columns = in_seconds(columns, numbers)
     columns = against_motion(columns, numbers)
-    on_repeat, restart, columns = find_clock(layout, columns, numbers)
-    guesses += unloaded_start_in_doubt(layout, columns)
-    kind = _kind_by_columns("run", layout, columns)
-    result = Understood(
-        kind,
-        tuple(columns),
-        numbers,
-        _missing_words(cells, columns),
-        on_repeat,
-        restart,
-        tuple(guesses),
-        period,
-    )
-    if kind != "run":
-        return result
-    if are_points(columns, numbers):
+    result = _clocked(layout, cells, found._replace(columns=columns))._replace(period=period)
+    doubts = unloaded_start_in_doubt(layout, result.columns)
+    result = result._replace(guesses=(*result.guesses, *doubts))
+    if result.kind == "run" and are_points(result.columns, numbers):
         return result._replace(points=True)
-    return _sampled(layout, result)
+    return _sampled(layout, result) if result.kind == "run" else result
 
 
 def _of_other(
     layout: Layout, cells: Cells, spacing: _Spacing, found: _Interpretation
 ) -> Understood:
     """Return what is understood of a scan, or of a table that is neither scan nor run."""
-    # late: starting stays quick
-    from tribolab.reading.unknown.columns.clock import find_clock, summed
-
-    numbers, guesses = cells.numbers, [*found.guesses]
+    numbers = cells.numbers
     period = summed(found.columns, numbers)
-    on_repeat, restart, columns = find_clock(layout, found.columns, numbers)
-    marks: list[str] = []
+    result = _clocked(layout, cells, found)._replace(period=period)
+    columns = list(result.columns)
     if found.kind == "scan":
         heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
         factors = unapplied_height_factors(layout, numbers[:, heights], columns)
-        guesses += [said for said in factors if said[-45:] not in " ".join(guesses)]
+        known = " ".join(result.guesses)
+        guesses = (*result.guesses, *(said for said in factors if said[-45:] not in known))
         marks = take_stated_missing(layout, columns, numbers)
-    words = tuple(dict.fromkeys([*marks, *_missing_words(cells, columns)]))
-    placed = any(c.used and c.quantity == "x" for c in columns)
-    if found.kind == "scan" and found.pitched and not placed:
-        pitch, length = spacing.pitch, spacing.length
-        guesses += [length.guess] if length is not None and length.guess else []
-        return Understood(
-            "scan",
-            tuple(columns),
-            numbers,
-            words,
-            "",
-            False,
-            tuple(guesses),
-            pitch_pattern=pitch.pattern if pitch is not None else "",
-            length_pattern=length.pattern if length is not None else "",
-        )
-    kind = _kind_by_columns(found.kind, layout, columns)
-    result = Understood(
-        kind, tuple(columns), numbers, words, on_repeat, restart, tuple(guesses), period
+        words = tuple(dict.fromkeys([*marks, *result.missing]))
+        result = result._replace(guesses=guesses, missing=words)
+    if (
+        found.kind != "scan"
+        or not found.pitched
+        or any(c.used and c.quantity == "x" for c in columns)
+    ):
+        return _sampled(layout, result) if result.kind == "run" else result
+    pitch, length = spacing.pitch, spacing.length
+    doubt = [length.guess] if length is not None and length.guess else []
+    return result._replace(
+        kind="scan",
+        on_repeat="",
+        restart=False,
+        period=False,
+        guesses=(*result.guesses, *doubt),
+        pitch_pattern=pitch.pattern if pitch is not None else "",
+        length_pattern=length.pattern if length is not None else "",
     )
-    return _sampled(layout, result) if kind == "run" else result
+
+
+def _clocked(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
+    """Return what is understood, with the settings of the clock."""
+    on_repeat, restart, columns = find_clock(layout, found.columns, cells.numbers)
+    return Understood(
+        _kind_by_columns(found.kind, layout, columns),
+        tuple(columns),
+        cells.numbers,
+        _missing_words(cells, columns),
+        on_repeat,
+        restart,
+        tuple(found.guesses),
+    )
 
 
 def _missing_words(cells: Cells, columns: Sequence[DraftColumn]) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,9 +10,9 @@ import numpy as np
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Given, derive
 from tribolab.reading.interpret.names import is_stroke_frequency
-from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
+from tribolab.reading.numbers import escaped
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, radius_of, torque_of, turns_of
@@ -22,25 +23,24 @@ from tribolab.reading.unknown.derivations.inclined_contact import (
     find_inclined,
     radius_of_ball,
 )
-from tribolab.reading.unknown.derivations.load_cells import loads_that_add
 from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Known, Source
 from tribolab.reading.unknown.derivations.two_bodies import (
     Pair,
     find_surface_speeds,
     radii_of_surfaces,
     second_is_faster,
-    shaft_of_torque,
     speed_symbol,
 )
-from tribolab.reading.unknown.header.lengths import (
+from tribolab.reading.unknown.header.run_amounts import (
     find_arm,
     find_radius,
     find_ring,
+    find_slide_roll_ratio,
     is_at_arm,
     slides_on_rim,
+    stated_rotation,
 )
 from tribolab.reading.unknown.header.settings import numeric_settings, text_settings
-from tribolab.reading.unknown.header.slip import find_slide_roll_ratio, stated_rotation
 from tribolab.reading.unknown.header.stroke_settings import (
     Strokes,
     find_strokes,
@@ -49,7 +49,7 @@ from tribolab.reading.unknown.header.stroke_settings import (
 )
 from tribolab.reading.unknown.header.zero import find_zero, friction_column, zero_in_doubt
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.reading.unknown.model import DraftColumn, Understood
+from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
 
 _STEADY = 0.05  # of its median: a rotation speed that a controller holds
 _SPEEDS = ("sliding_velocity", "rotation_speed")
@@ -199,10 +199,8 @@ def _add_surfaces(known: _Facts, pair: Pair) -> None:
     if not radii:
         _add_track(known)
         return
-    alike = len({value.number * value.scale for value in values}) < 2
-    shaft = 0 if alike else shaft_of_torque(known.layout, pair)
-    if shaft is not None:
-        known.add("track_radius", radii[shaft].symbol, radii[shaft].source)
+    if len({value.number * value.scale for value in values}) < 2:  # else: at which does it act?
+        known.add("track_radius", radii[0].symbol, radii[0].source)
 
 
 def _add_track(known: _Facts) -> None:
@@ -334,3 +332,13 @@ def _is_weight(column: DraftColumn) -> bool:
     return (
         converts(unit or "", "kg") and key_pattern("load").search(normalise_label(name)) is not None
     )
+
+
+def loads_that_add(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+    """Return the columns of loads that add up, as written in a formula."""
+    return [
+        c._replace(unit=unit if say else None)
+        for c in columns
+        if not c.used and c.reason is Reason.ADDS
+        for _, unit, say in [bare_name(c)]
+    ]

@@ -14,8 +14,8 @@ from tribolab.reading.runs.stroke_speed import DENSEST
 from tribolab.reading.unknown.derivations.candidate_lines import confirmed_value
 from tribolab.reading.unknown.derivations.known_amounts import KnownRun, is_steady
 from tribolab.reading.unknown.derivations.model import DraftedFormula, Follows, Source, SpeedBy
+from tribolab.reading.unknown.header.run_amounts import stated_rotation
 from tribolab.reading.unknown.header.settings import text_settings
-from tribolab.reading.unknown.header.slip import stated_rotation
 from tribolab.reading.unknown.header.stroke_settings import Strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import Understood

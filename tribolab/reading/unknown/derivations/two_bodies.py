@@ -12,7 +12,6 @@ from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import (
-    key_pattern,
     normalise_label,
     pairs_of_bodies,
     part_pattern,
@@ -134,21 +133,3 @@ def speed_symbol(column: DraftColumn, name: str) -> tuple[DraftColumn, str]:
     in_cycles = counted is not None and counted.counts != "radians"
     symbol = f"2 * pi * {name}" if in_cycles else name
     return column._replace(unit=unit if say else None, used=True), symbol
-
-
-def shaft_of_torque(layout: Layout, pair: Pair) -> int | None:
-    """Return the body (0, 1) whose shaft has the torque sensor, if a line states it."""
-    torque = key_pattern("torque")
-    clauses = [
-        normalise_label(clause)
-        for line in layout.text_above()
-        for clause in re.split(r"[,;.:\uff0c\uff1b\u3002\uff1a]", line[:_MAX_LINE])
-    ]
-    shafts = {
-        index
-        for clause in clauses
-        if torque.search(clause)
-        for index, (own, other) in enumerate((pair.bodies, pair.bodies[::-1]))
-        if own.search(clause) and not other.search(clause)
-    }
-    return shafts.pop() if len(shafts) == 1 else None

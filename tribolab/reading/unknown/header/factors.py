@@ -1,7 +1,9 @@
-"""Levers, gains and contacts that the text above a table states: factors that signals may lack."""
+"""Levers, gains, contacts and calibrations that the text above a table states."""
 
 from __future__ import annotations
 
+import itertools
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,22 +14,28 @@ from tribolab.reading.interpret.phrases import (
     phrases,
     ratios_in,
     single_number,
-    weight_on_lever,
 )
 from tribolab.reading.lexicon.lexicon import (
+    alternatives,
     key_pattern,
     mentions,
+    normalise_label,
+    part_pattern,
     plain_text,
     plain_words,
     text_pattern,
 )
 from tribolab.reading.numbers import Number, numbers_in
-from tribolab.reading.unknown.header.calibration_lines import states_calibration, states_raw_zero
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
+from tribolab.units.spellings import MICRO
 
 _MAX_LINE = 200  # characters of a line that are looked at
 _MAX_CONTACTS = 12
+_QUOTED = 3
+_RAW = re.compile(rf"[mk{MICRO}u]?V|{alternatives('count')}", re.IGNORECASE)
+_EQUALS = re.compile(rf"\s?{alternatives('equals')}\s?", re.IGNORECASE)
+_UNIT_OF_NAME = re.compile(r"[\[(](\w{1,12}/\w{1,12})[\])]")
 
 
 def unapplied_factors(layout: Layout) -> list[str]:
@@ -95,8 +103,6 @@ def _unapplied(line: str) -> str:
     numbers = numbers_in(line)
     if contacts_in(line):
         return f"friction and load are both of all contacts, or both of one: '{shown(line, 40)}'"
-    if weight_on_lever(line):
-        return ""  # the load is the weight times the lever
     as_they_stand = f"signals are read as they stand, not times '{shown(line, 40)}'"
     for ratio in ratios_in(line):
         key = line[: ratio.start]
@@ -105,6 +111,8 @@ def _unapplied(line: str) -> str:
             return ""  # what the lever makes of a weight is said behind it
         if named and ratio.one != ratio.other:
             return as_they_stand
+    if mentions("lever", line) and any(not number.unit and number.value != 1 for number in numbers):
+        return as_they_stand
     multiplies = any(_multiplies(line, number) and number.value != 1 for number in numbers)
     if multiplies or (mentions("signal", line) and mentions("scaled_in_words", line)):
         return f"signals are read as they stand, and not as the file says: '{shown(line, 60)}'"
@@ -141,3 +149,46 @@ def _multiplies(line: str, number: Number) -> bool:
         return False
     words = before[0].rpartition(".")[2] if not any(map(str.isdigit, before[0])) else ""
     return mentions("multiply", words) or mentions("multiply", line[number.stop :][:30])
+
+
+def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
+    """Quote the lines with a calibration of volts or counts, or its zero; "" without any.
+
+    With `bare`, heights are meant, which may have no header.
+    """
+    lines = [line[:_MAX_LINE].strip() for line in layout.text_above(bare=bare)]
+    found = [line for line in lines if states_calibration(line) or states_raw_zero(line)]
+    return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(found[:_QUOTED]))
+
+
+def states_calibration(line: str) -> bool:
+    """Whether a line states the calibration of a volt or a count.
+
+    >>> stated = ("Encoder: 500 counts/mm", "1 N = 4213 counts", "Gain [N/mV]: 2.3", "2 mV/V")
+    >>> [states_calibration(line) for line in (*stated, "Speed: 2 mm/s", "Supply: 5 V")]
+    [True, True, True, True, False, False]
+    """
+    numbers = numbers_in(line)
+    units = [number.unit for number in numbers] + _UNIT_OF_NAME.findall(line)
+    if any("/" in unit and any(map(_RAW.fullmatch, unit.split("/"))) for unit in units):
+        return True
+    return any(
+        _EQUALS.fullmatch(line[one.end : other.start])
+        and one.unit
+        and other.unit
+        and bool(_RAW.fullmatch(one.unit)) != bool(_RAW.fullmatch(other.unit))
+        for one, other in itertools.pairwise(numbers)
+    )
+
+
+def states_raw_zero(line: str) -> bool:
+    """Whether a line states a zero in volts or counts, which may still be in the signal.
+
+    >>> lines = ("Zero: 118 counts", "Offset 0.02 V (subtracted)", "Zero: 0 V", "Range: 10 V")
+    >>> [states_raw_zero(line) for line in lines]
+    [True, False, False, False]
+    """
+    raw = any(n.value and _RAW.fullmatch(n.unit) for n in numbers_in(line))
+    if not raw or not part_pattern("zero").search(normalise_label(line)):
+        return False
+    return not (mentions("zero_taken_off", line) or mentions("zero_is_taken_off", line))

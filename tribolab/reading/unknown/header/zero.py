@@ -14,7 +14,7 @@ from tribolab.reading.lexicon.lexicon import mentions, part_pattern
 from tribolab.reading.numbers import decimal
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.header.settings import numeric_settings
-from tribolab.reading.unknown.layout.step_marks import STEP_WORD
+from tribolab.reading.unknown.layout.header import STEP_WORD
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 
-from tribolab.reading.unknown.layout.header import find_heading
+from tribolab.reading.unknown.layout.header import Block, find_heading
 from tribolab.reading.unknown.layout.lines import Grammar
-from tribolab.reading.unknown.layout.step_marks import Block
 
 
 def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
@@ -25,8 +24,11 @@ def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
     for index, line in enumerate(lines):
         if not line.strip():
             continue
+        if rows and grammar.plain_width(line) == width:
+            rows.append(index)
+            continue
         cells = grammar.width(line)
-        if cells and rows and _is_footer(line, lines[rows[0]], grammar):
+        if cells and rows and grammar.is_footer(line) and not grammar.is_footer(lines[rows[0]]):
             cells = 0
         if not cells and rows and grammar.goes_on(line, width):
             cells = width
@@ -41,13 +43,6 @@ def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
             rows.append(index)
     close()
     return blocks
-
-
-def _is_footer(line: str, first: str, grammar: Grammar) -> bool:
-    """Whether a word begins a line of numbers, and none the first row above it."""
-    if grammar.is_plain(line):
-        return False
-    return grammar.is_footer(line) and not grammar.is_footer(first)
 
 
 def main_blocks(blocks: list[Block]) -> tuple[list[Block], int]:

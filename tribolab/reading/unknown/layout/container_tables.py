@@ -25,9 +25,8 @@ from tribolab.reading.unknown.layout.container_column import (
     one_of_each,
     others_alike,
 )
-from tribolab.reading.unknown.layout.header import Heading
+from tribolab.reading.unknown.layout.header import Block, Heading
 from tribolab.reading.unknown.layout.sheets import main_sheet
-from tribolab.reading.unknown.layout.step_marks import Block
 from tribolab.reading.unknown.layout.text_layout import Held, Layout
 from tribolab.reading.unknown.model import Understood
 
@@ -138,29 +137,7 @@ def _laid_out(file: File, columns: Sequence[HeldColumn], text: str, rows: int) -
     numbers = np.empty((shown, len(columns)))
     for place, column in enumerate(columns):
         numbers[:, place] = column.values[:shown]
-    return Layout(
-        file=file,
-        encoding="utf-8",
-        line_ends="LF",
-        delimiter="\t",
-        decimal=".",
-        width=len(cells),
-        lines=tuple(lines),
-        blocks=(block,),
-        others=0,
-        heading=heading,
-        header_line=None,
-        header_pattern=None,
-        skip=0,
-        repeats=False,
-        step=None,
-        end=None,
-        skipped=None,
-        whole=True,
-        notes=(),
-        guesses=(),
-        numbers=numbers,
-    )
+    return Layout(file, "\t", len(cells), tuple(lines), (block,), heading, numbers=numbers)
 
 
 def _cell(column: HeldColumn) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.reading.dialect.delimited.headers import counts_its_rows
@@ -47,6 +47,10 @@ _STEMS = frozenset(stem for word in known_words("run") for stem in (*word.stems,
 _SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.symbols)
 
 
+# what steps of a programme are called
+STEP_WORD = alternatives("step")
+
+
 class Heading(NamedTuple):
     """A header: index of its line and of the row of units, with their contents.
 
@@ -59,6 +63,16 @@ class Heading(NamedTuple):
     cells: tuple[str, ...]
     unit_cells: tuple[str, ...]
     aligned: bool
+
+
+class Block(NamedTuple):
+    """Lines of numbers that follow one another; indices of lines count from 0."""
+
+    start: int
+    stop: int
+    rows: tuple[int, ...]
+    width: int
+    heading: Heading | None
 
 
 def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int) -> Heading | None:
@@ -83,8 +97,6 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
         for i, c in split.items()
         if _fits(lines[i], c[0], grammar, width) or _is_row_of_units(c[0], grammar, width)
     }
-    fitting |= {i: c for i, c in _units_below_names(lines, above[:3], fitting, width).items()}
-    fitting = {index: fitting[index] for index in above[:3] if index in fitting}
     for index, (cells, aligned) in fitting.items():
         over = [above for above in fitting if above < index]
         if _are_units(cells) and over:
@@ -166,40 +178,6 @@ def _is_row_of_units(cells: Sequence[str], grammar: Grammar, width: int) -> bool
     if grammar.delimiter == "whitespace" or len(cells) != width:
         return False
     return any(cells) and all(is_unit(cell.strip("[]() ")) for cell in cells if cell)
-
-
-def _units_below_names(
-    lines: Sequence[str],
-    above: Sequence[int],
-    fitting: Mapping[int, tuple[tuple[str, ...], bool]],
-    width: int,
-) -> dict[int, tuple[tuple[str, ...], bool]]:
-    """Return rows of units separated by blanks, with units for some columns only, by position."""
-    found: dict[int, tuple[tuple[str, ...], bool]] = {}
-    for index in above:
-        words = list(_WORD.finditer(lines[index]))
-        if index in fitting or not width // 2 <= len(words) < width:
-            continue
-        if not any(map(str.isalpha, lines[index])):
-            continue  # a mark of comments is no percentage
-        if not all(is_unit(word[0].strip("[]()")) for word in words):
-            continue
-        over = next((i for i in above if i < index and i in fitting), None)
-        names = list(_WORD.finditer(lines[over])) if over is not None else []
-        if len(names) != width:
-            continue
-        cells = [""] * width
-        for word in words:
-            near = min(range(width), key=lambda k: _offset(names[k].span(), word.span()))
-            cells[near] = word[0]
-        if sum(map(bool, cells)) == len(words):
-            found[index] = tuple(cells), False
-    return found
-
-
-def _offset(one: tuple[int, int], other: tuple[int, int]) -> int:
-    """Return how far two words are out of line, at the end that fits better."""
-    return min(abs(one[0] - other[0]), abs(one[1] - other[1]))
 
 
 def names_any(cell: str, *quantities: str) -> bool:

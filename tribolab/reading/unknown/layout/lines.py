@@ -74,10 +74,12 @@ class Grammar:
         stripped = line.strip() if self.delimiter == "whitespace" else line
         return bool(self._plain.fullmatch(stripped)) and any(map(str.isdigit, stripped))
 
+    def plain_width(self, line: str) -> int:
+        """Return the number of cells of a line of numbers and empty cells; 0 for any other line."""
+        return len(line.split(self._mark)) if self.is_plain(line) else 0
+
     def width(self, line: str) -> int:
         """Return the number of cells of a row of numbers; 0 for any other line."""
-        if self.is_plain(line):
-            return len(line.split(self._mark))
         width, merit = self.merit(line)
         return width if merit else 0
 

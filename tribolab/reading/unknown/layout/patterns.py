@@ -6,12 +6,11 @@ import re
 from collections.abc import Sequence
 
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
-from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.numbers import escaped
 from tribolab.reading.text.bounded_patterns import MAX_PATTERN
 from tribolab.reading.text.first_bytes import HEAD, File
-from tribolab.reading.unknown.layout.header import first_cells
+from tribolab.reading.unknown.layout.header import STEP_WORD, Block, first_cells
 from tribolab.reading.unknown.layout.lines import Grammar
-from tribolab.reading.unknown.layout.step_marks import STEP_WORD, Block
 
 _TAIL = 1 << 14
 _TRIED = 20  # patterns of a step's number

@@ -13,9 +13,8 @@ import numpy as np
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
-from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.interpret.unit_texts import is_unit
-from tribolab.reading.numbers import numbers_in
+from tribolab.reading.numbers import escaped, numbers_in
 from tribolab.reading.raw import limits
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import HEAD, File
@@ -27,7 +26,7 @@ from tribolab.reading.text.number_spelling import (
 )
 from tribolab.reading.text.thousands import Mark, find_thousands, without_thousands
 from tribolab.reading.unknown.layout.blocks import find_blocks, main_blocks
-from tribolab.reading.unknown.layout.header import Heading
+from tribolab.reading.unknown.layout.header import STEP_WORD, Block, Heading
 from tribolab.reading.unknown.layout.lines import (
     DELIMITERS,
     Grammar,
@@ -41,7 +40,6 @@ from tribolab.reading.unknown.layout.patterns import (
     last_lines,
     step_pattern,
 )
-from tribolab.reading.unknown.layout.step_marks import STEP_WORD, Block
 
 _LAST_LINES = 20  # lines at the end that show the delimiter
 _CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
@@ -72,25 +70,25 @@ class Layout(NamedTuple):
     """
 
     file: File
-    encoding: str
-    line_ends: str
     delimiter: str
-    decimal: str
     width: int
     lines: tuple[str, ...]
     blocks: tuple[Block, ...]
-    others: int
     heading: Heading | None
-    header_line: int | None
-    header_pattern: str | None
-    skip: int
-    repeats: bool
-    step: str | None
-    end: str | None
-    skipped: str | None
-    whole: bool
-    notes: tuple[str, ...]
-    guesses: tuple[str, ...]
+    encoding: str = "utf-8"
+    line_ends: str = "LF"
+    decimal: str = "."
+    others: int = 0
+    header_line: int | None = None
+    header_pattern: str | None = None
+    skip: int = 0
+    repeats: bool = False
+    step: str | None = None
+    end: str | None = None
+    skipped: str | None = None
+    whole: bool = True
+    notes: tuple[str, ...] = ()
+    guesses: tuple[str, ...] = ()
     held: Held | None = None
     thousands: Mark = ""
     quoted: bool = False
@@ -268,7 +266,7 @@ def _with_rows_that_go_on(
             break
         rows += block.rows
         events += between
-    clock = [_first_number(lines[index], grammar) for index in rows]
+    clock = [_first_number(lines[index], grammar) for index in rows] if events else []
     if not events or not (np.diff(clock) > 0).all():
         return main, None
     words = sorted({_AFTER_WORDS.split(event, maxsplit=1)[0] for event in events})

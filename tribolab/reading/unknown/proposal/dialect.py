@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, NamedTuple, overload
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
@@ -75,9 +75,9 @@ def describe(layout: Layout, understood: Understood) -> Described:
     proposed, stated = _values(layout, understood, follows)
     if layout.delimiter == "whitespace":
         layout = layout._replace(
-            header_pattern=any_blanks(layout.header_pattern),
-            step=any_blanks(layout.step),
-            end=any_blanks(layout.end),
+            header_pattern=any_blanks(layout.header_pattern or "") or None,
+            step=any_blanks(layout.step or "") or None,
+            end=any_blanks(layout.end or "") or None,
         )
         understood = understood._replace(rate_pattern=any_blanks(understood.rate_pattern))
         proposed = [value._replace(pattern=any_blanks(value.pattern)) for value in proposed]
@@ -271,15 +271,7 @@ def _values(
     return values[:_MAX_SETTINGS], used
 
 
-@overload
-def any_blanks(pattern: str) -> str: ...
-
-
-@overload
-def any_blanks(pattern: str | None) -> str | None: ...
-
-
-def any_blanks(pattern: str | None) -> str | None:
+def any_blanks(pattern: str) -> str:
     r"""Return a pattern in which blanks or tabs match any number of them.
 
     In a table whose cells are separated by blanks, the reader sees one tab for each run of blanks.
@@ -287,4 +279,4 @@ def any_blanks(pattern: str | None) -> str | None:
     >>> any_blanks(r"^\s*# sample  rate:\s*(\d+)")
     '^\\s*#[ \\t]+sample[ \\t]+rate:\\s*(\\d+)'
     """
-    return None if pattern is None else re.sub(r"(?:(?<!\\) |\\t)+", r"[ \\t]+", pattern)
+    return re.sub(r"(?:(?<!\\) |\\t)+", r"[ \\t]+", pattern)

@@ -19,7 +19,7 @@ from tribolab.reading.unknown.derivations.candidate_lines import candidate_lines
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.missing_inputs import Uncalibrated, lacking, unknown_of
 from tribolab.reading.unknown.derivations.model import Follows
-from tribolab.reading.unknown.header.calibration_lines import calibration_lines
+from tribolab.reading.unknown.header.factors import calibration_lines
 from tribolab.reading.unknown.header.settings import lines_without_unit
 from tribolab.reading.unknown.header.zero import STILL
 from tribolab.reading.unknown.layout.text_layout import Layout
