@@ -7,7 +7,7 @@ import pytest
 
 from tribolab.reading.interpret.settings import amounts_of
 from tribolab.reading.lexicon import lexicon
-from tribolab.reading.lexicon.lexicon import key_pattern, says, text_pattern
+from tribolab.reading.lexicon.lexicon import key_pattern, mentions, text_pattern
 from tribolab.reading.numbers import numbers_in
 
 FOLDER = Path(lexicon.__file__).parent
@@ -74,8 +74,8 @@ def test_a_line_without_an_amount_states_none_with_a_unit(line):
     ],
 )
 def test_words_of_a_sentence_say_one_thing_and_not_its_contrary(name, yes, no):
-    assert says(name, yes)
-    assert not says(name, no)
+    assert mentions(name, yes)
+    assert not mentions(name, no)
 
 
 @pytest.mark.parametrize(
