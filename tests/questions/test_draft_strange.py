@@ -26,7 +26,7 @@ def written(path, header, *columns, delimiter=",", number="{:.4f}", encoding="ut
 
 
 def asked(path):
-    with pytest.raises(tl.TribolabError, match="does not say all itself") as told:
+    with pytest.raises(tl.TribolabError, match="does not state everything") as told:
         tl.read(path)
     return str(told.value)
 

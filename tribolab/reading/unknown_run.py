@@ -192,7 +192,8 @@ def left_open(draft: Draft) -> ReadError | None:
         return GuessedError(draft.path, asked, cures.SURFACE, missing, known)
     if asked or lacks_friction(draft):
         lacks, options = missing_words(draft), missing_options(draft)
-        return GuessedError(draft.path, asked, cures.RUN, lacks, known, options)
+        by_option = missing_words(draft, by_option=True)
+        return GuessedError(draft.path, asked, cures.RUN, lacks, known, options, by_option)
     return None
 
 

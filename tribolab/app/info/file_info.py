@@ -355,7 +355,8 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
     rig = {"crank"} if "drive" in facts["metadata"] or turned else set()  # if a crank turns
     if "friction_force" in columns and reversals(columns["friction_force"]):
         rig.add("reversals")
-    return [f"  missing: {lack}" for lack in missing_inputs(names, rig)]
+    lacks = missing_inputs(names, rig)
+    return [f"  missing: {f'{x.what}: {x.option}' if x.option else x}" for x in lacks]
 
 
 def _doubts(signals: Mapping[str, np.ndarray]) -> list[str]:

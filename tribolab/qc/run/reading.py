@@ -92,15 +92,14 @@ def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     lasted = np.diff(subject.time[strokes.first])[strokes.usual]
     if not lasted.size:
         return []
-    found = (
-        float(median(strokes.length[strokes.usual])),
-        0.5 / float(median(lasted)),
-        0.5 * int(strokes.usual.sum()),
-    )
-    words = ("{0:.4g} mm strokes", "{0:.4g} Hz", "{0:.0f} cycles")
+    length, lasts = float(median(strokes.length[strokes.usual])), float(median(lasted))
+    # a speed that is set is the mean one of a stroke, or the peak of a sine
+    speed = float(np.clip(stated_values[-1], length / lasts, 0.5 * np.pi * length / lasts))
+    found = (length, 0.5 / lasts, 0.5 * int(strokes.usual.sum()), speed)
+    words = ("{0:.4g} mm strokes", "{0:.4g} Hz", "{0:.0f} cycles", "{0:.3g} mm/s")
     results = []
     for stated, measured, text, unit in zip(
-        stated_values, found, words, (1e3, 1.0, 1.0), strict=True
+        stated_values, found, words, (1e3, 1.0, 1.0, 1e3), strict=True
     ):
         apart = abs(measured - stated) / stated if stated > 0 else np.nan
         if not np.isfinite(apart):
@@ -114,7 +113,7 @@ def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     return results
 
 
-_STATED = ("stated_stroke_m", "stated_stroke_frequency_Hz", "stated_cycles")
+_STATED = ("stated_stroke_m", "stated_stroke_frequency_Hz", "stated_cycles", "stated_speed_m_s")
 _STROKES = (
     "One of the two has a wrong scale, unit or sampling rate, which makes the speed wrong; or the "
     "record contains only part of the test."

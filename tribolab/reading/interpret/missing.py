@@ -17,21 +17,32 @@ _ORDER = ("track_radius", "arm", "stroke", "friction_force", "normal_force", "sl
 _SYNONYMS = {"first_radius": "track_radius", "second_radius": "track_radius"}
 _RADIUS = 'radius = "(a length)" under [speed] of a dialect'
 _FORMULA = "formula = \"torque / '(a length)'\" under [[derived]] of a dialect"
-_STROKE = (
-    'the length of the stroke, for the sliding speed: stroke = "(a length)" under [speed] of a '
-)
-_TEXTS = {
-    "arm": "the length of the arm, for the friction: a formula under [[derived]] of a dialect",
-    "friction_force": "the friction: no column is known to hold it",
-    "normal_force": 'the load: normal_force = "(a force)" in the [[run]] of a campaign file',
-    "sliding_velocity": (
-        'the sliding speed: sliding_speed = "(a speed)" in the [[run]] of a campaign'
-    ),
+_STROKE = 'stroke = "(a length)" under [speed] of a dialect'
+_WHAT = {
+    "arm": "the length of the arm, for the friction",
+    "stroke": "the length of the stroke, for the sliding speed",
+    "friction_force": "the friction",
+    "normal_force": "the load",
+    "sliding_velocity": "the sliding speed",
+}
+_HOW = {
+    "arm": "a formula under [[derived]] of a dialect",
+    "friction_force": "no column is known to hold it",
+    "normal_force": 'normal_force = "(a force)" in the [[run]] of a campaign file',
+    "sliding_velocity": 'sliding_speed = "(a speed)" in the [[run]] of a campaign',
+}
+_OPTIONS = {
+    "normal_force": "--load 20N",
+    "track_radius": "--radius 15mm",
+    "sliding_velocity": "--speed 10mm/s",
 }
 _SHUTTLES = (
     "how long the strokes are and how often they come, for the sliding speed (the friction turns "
-    'over again and again): stroke = "(a length)" and frequency = "(e.g. 2 Hz)" under [speed] of a '
-    "dialect, with source = 'stroke'"
+    "over again and again)"
+)
+_STROKES = (
+    'stroke = "(a length)" and frequency = "(e.g. 2 Hz)" under [speed] of a dialect, with source = '
+    "'stroke'"
 )
 
 
@@ -42,22 +53,32 @@ class MissingInput(NamedTuple):
     goals: tuple[Goal, ...]
     facts: frozenset[str] = frozenset()
 
-    def __str__(self) -> str:
-        """Return what is missing, and how to state it."""
+    @property
+    def what(self) -> str:
+        """What is missing, and for what."""
         if self.member == "track_radius":
-            formula = f": {_FORMULA}" if "friction" in self.goals else ""
-            if self.goals == ("friction",):
-                return f"the radius of the track, for the friction{formula}"
-            if formula:
-                what = "the friction and the sliding speed"
-                return f"the radius of the track, for {what}{formula}, and {_RADIUS}"
-            return f"the radius of the track, for the sliding speed: {_RADIUS}"
+            wanted = {"friction": "the friction", "speed": "the sliding speed"}
+            return f"the radius of the track, for {' and '.join(wanted[g] for g in self.goals)}"
+        return _SHUTTLES if self._shuttles else _WHAT[self.member]
+
+    @property
+    def option(self) -> str:
+        """Option of the command line that states it, with an example; "" if there is none."""
+        return "" if self._shuttles else _OPTIONS.get(self.member, "")
+
+    @property
+    def _shuttles(self) -> bool:
+        return self.member == "sliding_velocity" and "reversals" in self.facts
+
+    def __str__(self) -> str:
+        """Return what is missing, and how to state it in a file."""
+        if self.member == "track_radius":
+            of_goals = {"friction": _FORMULA, "speed": _RADIUS}
+            return f"{self.what}: {', and '.join(of_goals[goal] for goal in self.goals)}"
         if self.member == "stroke":
             turns = ", with source = 'stroke' and how often the crank turns"
-            return f"{_STROKE}dialect{turns if 'crank' in self.facts else ''}"
-        if self.member == "sliding_velocity" and "reversals" in self.facts:
-            return _SHUTTLES
-        return _TEXTS[self.member]
+            return f"{self.what}: {_STROKE}{turns if 'crank' in self.facts else ''}"
+        return f"{self.what}: {_STROKES if self._shuttles else _HOW[self.member]}"
 
 
 def missing_inputs(

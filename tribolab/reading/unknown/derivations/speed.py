@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from tribolab.arrays.reversals import reversals
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, derive
 from tribolab.reading.interpret.unit_texts import converts
@@ -18,7 +19,7 @@ from tribolab.reading.unknown.header.run_amounts import stated_rotation
 from tribolab.reading.unknown.header.settings import text_settings
 from tribolab.reading.unknown.header.stroke_settings import Strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.reading.unknown.model import Understood
+from tribolab.reading.unknown.model import DraftColumn, Understood
 from tribolab.units.conversion import conversion
 from tribolab.units.quantities import unit_conversion
 
@@ -45,8 +46,9 @@ def add_speed(result: Follows, layout: Layout, understood: Understood, known: Kn
         return result.with_values(known.crank)
     if sliding.rule is None:
         return result.with_values(stated_rotation(known.values))
+    if sliding.rule.speed == "position":
+        return _by_position(result, sliding, understood, known)
     by_rule = {
-        "position": _by_position,
         "rotation": _by_rotation,
     }.get(sliding.rule.speed)
     if by_rule is not None:
@@ -66,10 +68,23 @@ def add_speed(result: Follows, layout: Layout, understood: Understood, known: Kn
     return result
 
 
-def _by_position(result: Follows, sliding: Derivation[Source]) -> Follows:
+def _by_position(
+    result: Follows, sliding: Derivation[Source], understood: Understood, known: KnownRun
+) -> Follows:
+    """Let the position be the speed; keep the speed that is stated of strokes, to be compared.
+
+    File: "x-velocity [mm/s]: 100" above strokes of 35 mm/s (liampond/EgbertsTribometer).
+    """
     (position,) = sliding.needs
     if position.rule is None:
-        return result
+        column = position.given.source if position.given is not None else None
+        stated = [v for v in known.values if v.name == "set_speed"]
+        alone = len(stated) == 1 and not _ANOTHER_SPEED.search(stated[0].text)
+        if not alone or not isinstance(column, DraftColumn):
+            return result
+        way = understood.numbers[:, column.place - 1]
+        kept = stated[0]._replace(name="stated_speed", to="m/s", unit=stated[0].own_unit)
+        return result.with_values(kept) if reversals(way - np.nanmean(way)) else result
     return result.with_derivation(position)._replace(speed=SpeedBy("position"))
 
 

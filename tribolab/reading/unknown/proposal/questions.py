@@ -37,7 +37,7 @@ _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z
 _TOLD = 12  # questions of one file that are listed in a line
 _LINES = 3  # of five, for what is unclear or missing
 _LISTED = 6  # columns that are listed as understood
-_UNKNOWN = "no known instrument writes such a file, and it does not say all itself"
+_UNKNOWN = "the instrument is not known, and the file does not state everything"
 _MAX_BESIDE = 50  # descriptions in the file's folder that are looked at
 _RADII = ("another length",)
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
@@ -140,8 +140,11 @@ def lacks_friction(draft: Drafted) -> bool:
     return any("friction" in lack.goals for lack in lacks)
 
 
-def missing_words(draft: Drafted) -> list[str]:
-    """Return what is missing for a friction coefficient over speed."""
+def missing_words(draft: Drafted, *, by_option: bool = False) -> list[str]:
+    """Return what is missing for a friction coefficient over speed.
+
+    Without how a file states it where an option of the command line does, if it is `by_option`.
+    """
     lacks = _lacks(draft)
     unused = [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
     if draft.layout is None or draft.understood is None:
@@ -150,7 +153,10 @@ def missing_words(draft: Drafted) -> list[str]:
     told = [
         (str(lack), calibration_lines(draft.layout))
         if isinstance(lack, Uncalibrated)
-        else (str(lack), candidate_lines(draft.layout, follows, lack.member))
+        else (
+            lack.what if by_option and lack.option else str(lack),
+            candidate_lines(draft.layout, follows, lack.member),
+        )
         for lack in lacks
     ]
     return [lack + (f"; is it {line}?" if line else "") for lack, line in told] + unused
@@ -161,17 +167,10 @@ def without_unit_and_missed(draft: Drafted) -> list[str]:
     return _unused(draft, _lacks(draft))
 
 
-_OPTIONS = {
-    "normal_force": "--load 20N",
-    "track_radius": "--radius 15mm",
-    "sliding_velocity": "--speed 10mm/s",
-}
-
-
 def missing_options(draft: Drafted) -> list[str]:
     """Return the options of the command line that state what a file lacks, with an example."""
-    members = {lack.member for lack in _lacks(draft)}
-    return [option for member, option in _OPTIONS.items() if member in members]
+    lacks = (lack for lack in _lacks(draft) if isinstance(lack, MissingInput))
+    return sorted(lack.option for lack in lacks if lack.option)
 
 
 def _lacks(draft: Drafted) -> list[MissingInput | Uncalibrated]:
@@ -206,19 +205,23 @@ class GuessedError(ReadError):
         lacks: Sequence[str] = (),
         understood: Sequence[str] = (),
         options: Sequence[str] = (),
+        by_option: Sequence[str] = (),
     ) -> None:
         super().__init__(_UNKNOWN, where=path, cure=cures.unknown_instrument(path, table))
-        self.args = (path, tuple(asked), table, tuple(lacks), tuple(understood), tuple(options))
+        said = map(tuple, (lacks, understood, options, by_option))
+        self.args = (path, tuple(asked), table, *said)
         self.asked = tuple(asked)
         self.lacks = tuple(lacks)
         self.understood = tuple(understood)
         self.options = tuple(options)
+        self.by_option = tuple(by_option)
 
     def message_for(self, audience: str) -> str:
         """Return the message for an audience."""
         cure = self.cure if isinstance(self.cure, str) else self.cure.message_for(audience)
         unclear = [f"Unclear: {question.line}" for question in self.asked]
-        missing = [f"Missing: {lack}" for lack in self.lacks]
+        lacks = self.by_option if audience == "terminal" and self.options else self.lacks
+        missing = [f"Missing: {lack}" for lack in lacks]
         told = f"Understood: {', '.join(self.understood) or 'nothing yet'}"
         if audience == "campaign":
             lines = [question.line for question in self.asked[:_TOLD]]
