@@ -109,7 +109,7 @@ def test_a_map_that_numbers_its_points_has_the_stated_pitch(tmp_path):
     assert float(scan.x[1] - scan.x[0]) == pytest.approx(0.625e-6)
     assert np.ptp(scan.height.values) == pytest.approx(1e-6 * np.ptp(heights))
     file.write_text("ZResolution,0.001,[um]\n" + table + "\n", "utf-8")
-    with pytest.raises(ReadError, match="pitch is not stated"):
+    with pytest.raises(ReadError, match="how far its points lie apart"):
         tl.read_scans(file)
 
 

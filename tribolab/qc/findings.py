@@ -98,7 +98,11 @@ class Findings:
                 "count": result.count,
                 "value": result.value if np.isfinite(result.value) else None,
                 "unit": result.unit,
-                "limits": dict(self.limits.get(check.name, {})),
+                "limits": {
+                    name: limit
+                    for name, limit in self.limits.get(check.name, {}).items()
+                    if np.isfinite(limit)  # one that is not set is NaN
+                },
                 "question": check.question,
                 "cure": (result.cure or check.cure) if result.status in ("suspect", "fail") else "",
             }

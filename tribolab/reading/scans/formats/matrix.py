@@ -5,6 +5,7 @@ Keyence, Alicona, Bruker and Zygo microscopes export such maps, each with its ow
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -17,7 +18,7 @@ from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import Marked, measurable, take_marks
 from tribolab.reading.scans.formats.named_units import unit_remedy
 from tribolab.reading.scans.formats.profilometers import MissingUnitError
-from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range
+from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range, unit_of_resolution
 from tribolab.reading.scans.stated_missing import take_stated
 from tribolab.units.conversion import conversion
 
@@ -26,6 +27,7 @@ _CUT = 8  # bytes of an incomplete character at their end
 _HEAD_LINES = 200  # most lines above a matrix
 _MIN_COLUMNS = 8  # least columns of a matrix; fewer may be a table
 _MAX_OF_LINE = 24  # numbers of one profile in a line
+NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")  # a name of a word and a number
 _ROWS = 4  # rows of equal width needed to recognise a matrix
 _MARKS = frozenset(
     ("", "no data", *"bad nan -nan n/a na inf -inf null none invalid void nodata".split())
@@ -108,7 +110,8 @@ def read_matrix(
     if header.gauge_step not in (None, header.height) and whole.all():
         header = header._replace(height=None)  # heights are possibly counts of that step
     if header.height is None:
-        header = header._replace(height=unit_of_range(header, heights))
+        unit = unit_of_range(header, heights) or unit_of_resolution(header, heights)
+        header = header._replace(height=unit)
     _refuse(path, matrix, header)
     return map_of(heights, header, "matrix of heights, by its header")
 
@@ -168,14 +171,42 @@ def _matrix(lines: list[str]) -> _Matrix | None:
             trial = _Matrix(lines[:start], [], delimiter, mark, columns)
             if columns < _ROWS or any(_numbers(line, trial) is None for line in first):
                 continue
+            if _numbers_its_points(trial):
+                return _without_numbers(_complete(lines[start:], trial))
             return None if _is_named(trial) else _complete(lines[start:], trial)
     return None
 
 
+def _numbers_its_points(matrix: _Matrix) -> bool:
+    """Whether the names above the columns are a word and a rising number.
+
+    File: an area of an Olympus OLS5000, "DataLine", "POS = 0" to "POS = 1023"
+    (jarredclloyd/GeochemistryTools.jl).
+    """
+    names = _cells_of(_last_line(matrix), matrix.delimiter)[1:]
+    found = [match for name in names if (match := NUMBERED.fullmatch(name))]
+    across = np.diff([int(match[2]) for match in found])
+    alike = len(found) == len(names) == matrix.columns - 1 and len({m[1] for m in found}) == 1
+    return bool(alike and across.size and (across == 1).all())
+
+
+def _without_numbers(matrix: _Matrix) -> _Matrix | None:
+    """Return the matrix without its first column, which numbers the rows; None if it does not."""
+    if any(row[0] != matrix.rows[0][0] + place for place, row in enumerate(matrix.rows)):
+        return None
+    above = matrix.above[: matrix.above.index(_last_line(matrix))]
+    rows = [row[1:] for row in matrix.rows]
+    return matrix._replace(above=above, rows=rows, columns=matrix.columns - 1)
+
+
+def _last_line(matrix: _Matrix) -> str:
+    return next((line for line in reversed(matrix.above) if line.strip()), "")
+
+
 def _is_named(matrix: _Matrix) -> bool:
     """Whether names or positions of columns are above the matrix."""
-    last = next((line for line in reversed(matrix.above) if line.strip()), "")
-    return len(_cells_of(last, matrix.delimiter)) >= max(_ROWS, matrix.columns - 1)
+    names = _cells_of(_last_line(matrix), matrix.delimiter)
+    return len(names) >= max(_ROWS, matrix.columns - 1)
 
 
 def _complete(lines: Sequence[str], like: _Matrix) -> _Matrix:
