@@ -19,7 +19,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 PROJECT = HERE.parents[1]
 PAGE = PROJECT / "docs" / "benchmarks.md"
-LONG = {"bench_big_run", "bench_one_run", "bench_run_out", "bench_scale", "bench_report"}
+LONG = {"bench_big_run", "bench_one_run", "bench_scale", "bench_report"}
 LIBRARIES = ("numpy", "scipy", "pandas", "xarray", "polars", "SurfaceTopography", "matplotlib")
 
 

@@ -11,19 +11,21 @@ import tempfile
 from pathlib import Path
 
 import pandas as pd
-from clock_shift_coverage import FEW_SPEEDS
 from side_by_side import least_times, row
 
 from tribolab.reading.clocks.merge import merge
 from tribolab.reading.run_files import read
 from tribolab.reading.signals import signals_of
-from tribolab.rig import Rig, simulate_run
+from tribolab.rig import Protocol, Rig, simulate_run
 from tribolab.rig.files import force_file, motion_file
 
 
 def main() -> None:
     """Print a row for each kind of run."""
-    for name, rig in (("small run", FEW_SPEEDS), ("run of the demo", Rig())):
+    for name, rig in (
+        ("small run", Rig(Protocol(speeds=(4.64e-6, 1e-4, 2.15e-3)))),
+        ("run of the demo", Rig()),
+    ):
         run = simulate_run("Sb-R", "glycerol", 31.0, seed=1, rig=rig)
         with tempfile.TemporaryDirectory() as place:
             force, motion = Path(place) / "a.csv", Path(place) / "b.csv"

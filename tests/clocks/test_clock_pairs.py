@@ -16,7 +16,7 @@ from tribolab.reading.clocks.merge import merge
 from tribolab.reading.clocks.motion import clean_motion
 from tribolab.reading.signals import signals_of
 
-# short logs of every kind and protocol; tests/benchmarks/clock_shift_coverage.py takes hundreds
+# short logs of every kind and protocol; tests/coverage/clock_shift_coverage.py takes hundreds
 PAIRS = {
     "clean": (502, "sweep"),
     "inertia": (503, "strokes"),

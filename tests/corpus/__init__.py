@@ -15,6 +15,6 @@ To make it anew, record what tests read (`corpus.record`), then collect::
     TRIBOLAB_RECORD=/tmp/recorded PYTHONPATH=.:tests python -m pytest -p corpus.record \
         tests/questions tests/scans tests/instruments ...
     TRIBOLAB_RECORD=/tmp/recorded PYTHONPATH=.:tests python -m corpus.record \
-        tests/benchmarks/scan_kinds.py
+        tests/robustness/scan_kinds.py
     PYTHONPATH=.:tests python -m corpus collect /tmp/recorded
 """

@@ -2,7 +2,7 @@
 
     TRIBOLAB_RECORD=FOLDER PYTHONPATH=.:tests \
         python -m pytest -p corpus.record tests/questions/test_draft.py
-    TRIBOLAB_RECORD=FOLDER PYTHONPATH=.:tests python -m corpus.record tests/benchmarks/scan_kinds.py
+    TRIBOLAB_RECORD=FOLDER PYTHONPATH=.:tests python -m corpus.record tests/robustness/scan_kinds.py
 
 The functions below are watched wherever they were imported to: their code is replaced, not their
 name. A file goes to ``FOLDER/files`` under its checksum, and a line to a list of cases: the name,

@@ -11,7 +11,7 @@ import xarray as xr
 
 import tribolab as tl
 
-SWEEP = runpy.run_path(str(Path(__file__).parents[1] / "benchmarks" / "stroke_patterns.py"))
+SWEEP = runpy.run_path(str(Path(__file__).parents[1] / "detection" / "stroke_patterns.py"))
 
 
 @pytest.mark.parametrize("seed", [10012, 10019, 10026, 10048, 10054, 10073, 10115, 10143, 10458])

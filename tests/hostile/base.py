@@ -1,7 +1,7 @@
 """What users do without meaning to: files, names and moments that tribolab has to survive.
 
 A case prepares a folder and returns the command; what the answer has to be stands beside it.
-``tests/benchmarks/break_it.py`` runs all of them with limits on time and memory,
+``tests/robustness/break_it.py`` runs all of them with limits on time and memory,
 ``tests/reading/test_hostile.py`` the quick ones.
 """
 

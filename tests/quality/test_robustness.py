@@ -1,7 +1,7 @@
 """Damaged files: a dataset or one TribolabError that names the file; and what once went wrong.
 
 The same mutators, on more files and with limits on time and memory, run for thousands of files in
-``tests/benchmarks/fuzz.py``.
+``tests/robustness/fuzz.py``.
 """
 
 import io

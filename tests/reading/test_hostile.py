@@ -1,6 +1,6 @@
 """What users do without meaning to is answered in one clear sentence; the quick part of it.
 
-All cases, each in a process of its own and with limits: ``tests/benchmarks/break_it.py``.
+All cases, each in a process of its own and with limits: ``tests/robustness/break_it.py``.
 """
 
 import re

@@ -66,7 +66,7 @@ def test_a_fault_is_found_by_its_check(tmp_path, name):
             read(paths)
         return
     # where the check is not about the two logs, the clocks are told: matching them takes longest,
-    # and tests/benchmarks/detection_table.py does it for every fault
+    # and tests/detection/detection_table.py does it for every fault
     matched = fault.check.startswith("clock") or name == "wrong_motion"
     shift = None if matched else run.facts["clock_shift_at_middle_s"]
     found = check_run(read(paths, clock_shift=shift), normal_force=31.0)

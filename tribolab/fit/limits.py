@@ -2,8 +2,8 @@
 
 from tribolab.core.limit import Count, Limit
 
-_SHEAR = "tests/benchmarks/shear_stress_coverage.py"
-_JOINT = "judgement; coverage checked by tests/benchmarks/joint_fit_coverage.py"
+_SHEAR = "tests/coverage/shear_stress_coverage.py"
+_JOINT = "judgement; coverage checked by tests/coverage/joint_fit_coverage.py"
 
 MIN_SPEEDS_OF_BAND = Count(
     4, "1", "measured speeds within the calculated band; with fewer, the band's own speeds are "

@@ -18,7 +18,7 @@ _GROWTH_GRID = 1.35 ** np.arange(18)
 # residuals, whose slow part the fit removes, but increases the error by a factor of 1.6: a higher
 # prior of independence would dominate. Chosen on simulated curves of 13 speeds for 95 % coverage
 # with independent and correlated errors of the stated size
-# (tests/benchmarks/shear_stress_coverage.py).
+# (tests/coverage/shear_stress_coverage.py).
 _INDEPENDENCE_PRIORS = (0.5, 2.0), (0.1, 8.0)
 
 

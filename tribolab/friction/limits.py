@@ -35,11 +35,11 @@ MAX_NOISE_OF_ACCELERATION = Limit(
 )
 MAX_ERROR_OF_SPEED = Limit(
     0.01, "1", "relative error of a set speed that is used as the measured one",
-    "judgement; checked by tests/benchmarks/bench_run_out.py",
+    "judgement; checked by tests/coverage/run_out_coverage.py",
 )  # fmt: skip
 MIN_WAVE_OVER_SPECTRUM = Limit(
     12.0, "1", "power of a wave over the spectrum next to it: chance e**-12",
-    "judgement; checked by tests/benchmarks/bench_run_out.py",
+    "judgement; checked by tests/coverage/run_out_coverage.py",
 )  # fmt: skip
 MAX_RATIO_OF_PURE_ROLLING = Limit(
     0.01, "1", "slide-roll ratio of a pair that rolls: 0.0003 to 0.013 were recorded",

@@ -11,9 +11,9 @@ running-in, which is not estimated here.
 Coverage of the 95 % interval over 500 records of 1920 samples each is 93 to 100 %, the median
 standard error 0.8 to 1.5 times the true scatter, for white noise, noise with a correlation time of
 1/200 to 1/5 of the record, sines, sawtooths, drifts and running-in
-(``tests/benchmarks/mean_coverage.py``). Waves that repeat with each turn of a rig whose rotation is
+(``tests/coverage/mean_coverage.py``). Waves that repeat with each turn of a rig whose rotation is
 recorded cancel over whole turns (:mod:`tribolab.friction.run_out`;
-``tests/benchmarks/bench_run_out.py`` prints coverage).
+``tests/coverage/run_out_coverage.py`` prints coverage).
 """
 
 from __future__ import annotations

@@ -177,7 +177,7 @@ def gap_effect(
     with smooth bridges) or to the newly lost ones, and scatters like means over windows: as 1/n of
     the remaining heights minus 1/n of the earlier ones. For scans with points, streaks, blobs and
     holes removed, 1.96 errors include the value of the complete scan in 93 to 99 % of cases
-    (`tests/benchmarks/gap_coverage.py`).
+    (`tests/coverage/gap_coverage.py`).
     """
     share = float(missing.reshape(len(missing), -1).mean(axis=1).max())
     if share > _MAX_MISSING:

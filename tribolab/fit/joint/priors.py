@@ -44,7 +44,7 @@ class JointPriors:
     A few loads hardly determine tau and kappa. With a prior that is highest at zero, such as a
     half-normal, 95 % intervals then have a coverage of some 93.5 %. The Rayleigh prior, x
     exp(-x^2/2) in units of the scale, is zero there [1]_, and the coverage is 95 %
-    (`tests/benchmarks/joint_fit_coverage.py`).
+    (`tests/coverage/joint_fit_coverage.py`).
 
     References
     ----------

@@ -8,7 +8,7 @@ the surface beyond the path treats the trend as slow drift that may continue. So
 errors: of the mean over its path, and beyond it.
 
 Coverage of the 95 % interval over 500 records of 1920 samples each and the median standard error
-over the true scatter (``tests/benchmarks/mean_coverage.py``) are given in `docs/metrology.md`.
+over the true scatter (``tests/coverage/mean_coverage.py``) are given in `docs/metrology.md`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Limits for the error of a mean; calibrated by ``tests/benchmarks/mean_coverage.py``."""
+"""Limits for the error of a mean; calibrated by ``tests/coverage/mean_coverage.py``."""
 
 from tribolab.core.limit import Count, Limit
 
-_TABLE = "tests/benchmarks/mean_coverage.py, seeds 0 to 3; reported on seeds from 100 on"
+_TABLE = "tests/coverage/mean_coverage.py, seeds 0 to 3; reported on seeds from 100 on"
 
 BLOCKS = Limit(384, "1", "equal stretches of time whose means represent a record", _TABLE)
 COARSE_BLOCKS = Limit(96, "1", "stretches in which a slow course is looked for", _TABLE)

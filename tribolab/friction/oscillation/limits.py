@@ -2,7 +2,7 @@
 
 from tribolab.core.limit import Count, Limit
 
-_TABLE = "tests/benchmarks/stick_slip_table.py, seeds below 10 000; reported on seeds from 20 000"
+_TABLE = "tests/detection/stick_slip_table.py, seeds below 10 000; reported on seeds from 20 000"
 
 MAX_LINES = Count(6, "1", "spectral lines that are listed for a segment, the strongest first")
 MIN_VARIANCE_OF_LINE = Limit(

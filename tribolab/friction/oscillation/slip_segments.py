@@ -143,7 +143,7 @@ def stick_slip(
     S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. Periods are counted from
     the middle of one sharp fall to that of the next (of a reversed sawtooth, of its rises), pauses
     left out. The mean drop of ten cycles at an amplitude three times the noise is known to some 5 %
-    (``tests/benchmarks/stick_slip_table.py``). Irregular stick-slip has no period: its dominant
+    (``tests/detection/stick_slip_table.py``). Irregular stick-slip has no period: its dominant
     wavelength is that of the mean frequency of its spectrum (`oscillation.mean_frequency`), or of
     its sharp line, if any; the mean distance between drops is ``recurrence_distance``. Spectrum and
     drops must agree on the period within 15 % or three errors (if periods scatter, within a factor

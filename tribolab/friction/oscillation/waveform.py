@@ -1,7 +1,7 @@
 """Waveform of an oscillation: steepness of rise and fall, and similarity of periods.
 
 The class follows from eleven features by a multinomial logistic model. Its coefficients were fitted
-to simulated traces (``tests/benchmarks/calibrate_stick_slip.py``, with seeds not used in tests or
+to simulated traces (``tests/detection/calibrate_stick_slip.py``, with seeds not used in tests or
 tables) and checked on real records.
 """
 

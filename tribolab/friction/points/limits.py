@@ -2,9 +2,9 @@
 
 from tribolab.core.limit import Count, Limit
 
-_GROUPS = "tests/benchmarks/points_coverage.py groups, seed 1; reported on seed 101"
-_MEANS = "tests/benchmarks/points_coverage.py means, seed 4; reported on seed 104"
-_ODD = "tests/benchmarks/points_coverage.py odd, seed 5; reported on seed 105"
+_GROUPS = "tests/coverage/points_coverage.py groups, seed 1; reported on seed 101"
+_MEANS = "tests/coverage/points_coverage.py means, seed 4; reported on seed 104"
+_ODD = "tests/coverage/points_coverage.py odd, seed 5; reported on seed 105"
 
 SPEED_TOLERANCE = Limit(
     0.1, "1", "largest relative difference of the speeds of one point", "judgement"

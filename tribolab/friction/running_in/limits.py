@@ -1,8 +1,8 @@
-"""Limits for running-in, calibrated by ``tests/benchmarks/running_in_coverage.py``."""
+"""Limits for running-in, calibrated by ``tests/coverage/running_in_coverage.py``."""
 
 from tribolab.core.limit import Count, Limit
 
-_TABLE = "tests/benchmarks/running_in_coverage.py, seed 8"
+_TABLE = "tests/coverage/running_in_coverage.py, seed 8"
 
 BY_CHANCE = Limit(5e-4, "1", "chance of a running-in in a sequence that has none", _TABLE)
 STEADY_WITHIN = Limit(

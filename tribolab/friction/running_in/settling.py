@@ -9,7 +9,7 @@ is found by the same test, backwards.
 
 Over 120 records of 1000 values each, a running-in is found in up to 1 % of steady records; one of
 five standard deviations and a time constant of 2 to 25 % of the run in 98 % of records in white
-noise (``tests/benchmarks/running_in_coverage.py``).
+noise (``tests/coverage/running_in_coverage.py``).
 
 References
 ----------

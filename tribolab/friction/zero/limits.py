@@ -2,7 +2,7 @@
 
 from tribolab.core.limit import Count, Limit
 
-_TRICKY = "tests/benchmarks/tricky_runs.py, seeds 0 to 9; reported on seeds from 1000"
+_TRICKY = "tests/detection/tricky_runs.py, seeds 0 to 9; reported on seeds from 1000"
 MAX_SAMPLE_TILT = Limit(
     0.09, "rad", "largest tilt between force cell and contact that is believed: five degrees; a "
     "sample that is askew by more is seen with the bare eye",

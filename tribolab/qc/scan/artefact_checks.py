@@ -17,7 +17,7 @@ from tribolab.qc.scan.subject import ScanSubject
 from tribolab.surface.form import fill_dropouts
 from tribolab.surface.roughness import primary_roughness, roughness_parameters
 
-_CALIBRATED = "tests/benchmarks/tricky_scans.py, sets 1000 to 1002, and the scans of ../shared/data"
+_CALIBRATED = "tests/detection/tricky_scans.py, sets 1000 to 1002, and the scans of ../shared/data"
 # seven-point slope of white noise of unit variance, times the pitch (ISO 4287, 4.4.1)
 _SLOPE_OF_NOISE = float(np.sqrt(2 * (45**2 + 9**2 + 1)) / 60)
 

@@ -2,7 +2,7 @@
 
 from tribolab.core.limit import Count, Limit
 
-_PAIRS = "judgement; checked by tests/benchmarks/clock_shift_coverage.py, seeds 1000 to 1019"
+_PAIRS = "judgement; checked by tests/coverage/clock_shift_coverage.py, seeds 1000 to 1019"
 
 MIN_DURATION_OF_STROKE = Limit(
     0.1, "1", "duration over that of the longest fast stroke; shorter motion is noise", _PAIRS

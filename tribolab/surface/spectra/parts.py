@@ -137,7 +137,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
     [1]_. If the parts of a scan differ by more than this theory of Gaussian heights allows, the
     error is larger by that factor. For single profiles with one hole of an eighth, a quarter and a
     half, 1.96 errors included the value of the complete profile in 94, 95 and 96 % of cases
-    (`tests/benchmarks/gap_coverage.py`, sixty profiles).
+    (`tests/coverage/gap_coverage.py`, sixty profiles).
 
     References
     ----------
