@@ -17,7 +17,7 @@ from tribolab.app.terminal import outcome_lines, truth_lines
 from tribolab.app.truth.friction import TruthComparison
 from tribolab.app.truth.known import DemoComparison
 from tribolab.app.truth.shear_stress import compare_shear_stress
-from tribolab.campaign.models.analysis import beside
+from tribolab.campaign.models.analysis import model_and_points
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.core.errors import AnalysisError, ConfigError
@@ -402,7 +402,7 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
     measured["friction_coefficient_std"] = measured.friction_coefficient_sem
     found = fit_shear_stress(measured, xu2026.contact, xu2026.psd("Sb-S"), 1.4, 310.0)
     assert found.shear_stress < 0
-    fit = beside(found, measured)
+    fit = model_and_points(found, measured)
     np.testing.assert_allclose(fit.friction_coefficient_model, fluid)
     np.testing.assert_allclose(fit.friction_coefficient_residual, -0.5 * fluid)
     assert not fit.friction_coefficient_solid.any()
