@@ -76,11 +76,11 @@ def test_what_is_open_is_asked_all_at_once_with_the_alternatives(unclear):
     assert "Understood: normal_force 'Load Cell' (N), position 'Weg' (mm)\n" in told
     assert told.count("\n") <= 4
     assert "Unclear: column 1 'Zeit': time is in s (or ms, min)\n" in told
-    assert "column 2 'Reibkraft': friction_force, in which unit? (or N, mN, gf)" in told
+    assert "column 2 'Reibkraft': friction_force, in which unit: N, mN or gf?" in told
     assert "Load Cell" not in str(error.asked)  # beside a friction force it is the other
     assert told.endswith("'tribolab info odd.csv --write my.toml' drafts a description of it: "
                          "name it with instrument=")  # fmt: skip
-    assert "\n" not in error.message_for("campaign") and "in which unit?" in error.message_for(
+    assert "\n" not in error.message_for("campaign") and "in which unit:" in error.message_for(
         "campaign"
     )
     assert "linear_slider" not in told  # nor any other of the known

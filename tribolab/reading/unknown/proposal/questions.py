@@ -49,12 +49,17 @@ class Question(NamedTuple):
     about: str
     guess: str
     options: tuple[str, ...] = ()
+    is_open: bool = False  # nothing is guessed: one of the options is wanted
 
     @property
     def line(self) -> str:
         """All of it in a line."""
+        if self.is_open and self.options:
+            *first, last = self.options
+            choice = f"{', '.join(first)} or {last}" if first else last
+            return f"{self.about}: {self.guess.rstrip('?')}: {choice}?"
         others = f" (or {', '.join(self.options)})" if self.options else ""
-        return f"{self.about}: {self.guess}{others}"
+        return f"{self.guess if self.about == 'table' else f'{self.about}: {self.guess}'}{others}"
 
 
 def questions(draft: Drafted) -> list[Question]:
@@ -80,7 +85,9 @@ def questions(draft: Drafted) -> list[Question]:
     asks = any(column.guessed or column.fill_in for column in understood.columns)
     if understood.kind == "scan" and "height" not in held and not asks:
         names = [f"column {c.place} '{shown(c.label, 20)}'" for c in understood.columns]
-        asked.append(Question("heights", "no column is known to hold them", (*names,)))
+        asked.append(
+            Question("heights", "no column is known to hold them", (*names,), is_open=True)
+        )
     moves = bool(held & {"sliding_velocity", "position"}) and "time" in held
     for column in understood.columns:
         if moves and column.quantity == "rotation_speed" and column.fill_in:
@@ -119,7 +126,7 @@ def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
     torque = torque_of(understood.columns) is not None
     if understood.kind == "run" and unknown and not torque and not names & _OF_FRICTION:
         options = tuple(f"column {c.place} '{shown(c.label, 30)}'" for c in unknown[:_TOLD])
-        asked.append(Question("friction", "no column is known to hold it", options))
+        asked.append(Question("friction", "no column is known to hold it", options, is_open=True))
     return asked
 
 
@@ -131,7 +138,8 @@ def _of_column(layout: Layout, column: DraftColumn) -> Question:
         lines = calibration_lines(layout, bare=True) if column.counted else ""
         unsaid = f"{column.quantity}, {asks}" + (f" (the file states {lines})" if lines else "")
         guess = f"{guess}; {unsaid}" if guess else unsaid
-    return Question(about, guess, tuple(dict.fromkeys(column.options)))
+    is_open = bool(column.fill_in) and not column.guessed
+    return Question(about, guess, tuple(dict.fromkeys(column.options)), is_open)
 
 
 def lacks_friction(draft: Drafted) -> bool:
