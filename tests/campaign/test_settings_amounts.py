@@ -41,7 +41,6 @@ def test_every_form_is_made_of_parts_that_exist(name, pattern):
         ("track_radius", "m", 0.0215, "ring on disc, mean track radius 21.5 mm"),
         ("load", "N", 19.6133, "Load,2,kg"),
         ("load", "N", 19.6133, "Charge : 2 kg"),
-        ("load", "N", 49.03325, "dead weight 1 kg on lever, ratio 1:5"),
         ("pitch", "m", 2.5e-7, "采样间距 0.25 µm"),
         ("stroke", "m", 8e-3, "stroke_mm=8"),
         ("frequency", "Hz", 2.0, "stroke 5 mm at 2 Hz"),
