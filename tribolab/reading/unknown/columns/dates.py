@@ -98,5 +98,5 @@ def _dates(
         index = column.place - 1
         words = [row[index] if index < len(row) else "" for row in rows]
         form, other = find_form(words if cells.text[index] else [])
-        if form and len(words) == len(cells.numbers):  # a damaged row is split in two ways
+        if form:
             yield column, seconds(words, form), form, other
