@@ -42,10 +42,7 @@ def resolve(
 ) -> tuple[list[ReadColumn], list[str]]:
     """Find the columns of a dialect in a table.
 
-    Returns
-    -------
-    tuple
-        The columns to read, and the labels of those that are not used.
+    Return the columns to read, and the labels of those that are not used.
 
     Raises
     ------
@@ -93,11 +90,8 @@ def scales_of(signals: Sequence[ReadColumn]) -> dict[str, tuple[float, float]]:
 def first_filled(columns: Mapping[str, Sequence[np.ndarray]]) -> dict[str, str]:
     """Choose the first filled one of several columns for a quantity.
 
-    Returns
-    -------
-    dict
-        Key of the chosen column by quantity, for quantities with several columns. A column is
-        filled if it has a number other than zero; if none is filled, the first is chosen.
+    Return its key by quantity, for quantities with several columns. A column is filled if it has a
+    number other than zero; if none is filled, the first is chosen.
     """
     keys: dict[str, list[str]] = {}
     for key in columns:

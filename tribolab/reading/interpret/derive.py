@@ -115,10 +115,7 @@ def missing_members(
 ) -> tuple[str, ...]:
     """Return the inputs that are missing to derive a quantity; empty if none are.
 
-    Returns
-    -------
-    tuple of str
-        Missing members of a rule whose other members are known; else the quantity itself.
+    They are members of a rule whose other members are known; else the quantity itself.
 
     Examples
     --------

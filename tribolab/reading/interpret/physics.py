@@ -59,10 +59,7 @@ class _Fit(NamedTuple):
 def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Proof]:
     """Return the quantities and units of columns, as far as their numbers prove them.
 
-    Returns
-    -------
-    dict
-        Proofs by place from 0; columns with an ambiguous unit are left out.
+    Their places count from 0; columns with an ambiguous unit are left out.
     """
     roles: dict[int, str] = {}
     fits: list[_Fit] = []

@@ -89,8 +89,6 @@ def parted_as_numbers(
 ) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
     """Return names and units of a header in which blanks also separate words of one name.
 
-    Notes
-    -----
     Units in brackets belong to the names before them. If the numbers still differ, there are no
     names.
     """

@@ -16,8 +16,6 @@ _NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTI
 def rows_outside(raw: RawText, delimiter: str) -> int:
     """Count the rows of numbers before, between and below the tables of a file.
 
-    Notes
-    -----
     A row has at least two cells, and between half and twice as many as the tables have columns; a
     few numbers in a line are settings or results.
 

@@ -26,8 +26,6 @@ def by_behaviour(
 ) -> tuple[Kind, list[DraftColumn], list[str]]:
     """Recognise a map, a profile or a run by the numbers of the columns.
 
-    Notes
-    -----
     Three columns whose first two fill a grid are a map. Two columns, the first even and rising, are
     a profile: a run needs more than one signal. In other tables the first column that rises in
     every row is time, and one that runs smoothly to and fro is the position.

@@ -22,10 +22,7 @@ _OVER_N = re.compile(r"\w{1,3}\s*/\s*N")  # a symbol and its unit, or divided by
 def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
     """Note if the recorded coefficient differs from the ratio of the forces, or cannot be one.
 
-    Returns
-    -------
-    list of str
-        One guess, or none.
+    Return one guess, or none.
     """
     held = {column.quantity: column for column in columns if column.used and column.quantity}
     ratio, *forces = (held.get(name) for name in _RATIO)

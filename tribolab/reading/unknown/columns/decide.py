@@ -41,10 +41,7 @@ _NOT_PROPOSED = -1000.0
 def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
     """Give each quantity to at most one column, as the evidence of all rules favours.
 
-    Returns
-    -------
-    list of DraftColumn
-        The columns with their quantities, what of them is a guess, and why others have none.
+    Return the columns with their quantities, what of them is a guess, and why others have none.
     """
     evidence = [one for rule in rules for one in rule(facts)]
     names = sorted({one.quantity for one in evidence if one.proposes})

@@ -22,8 +22,6 @@ COUNTED_SO = "it is counted against the motion: no friction drives what slides"
 def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[DraftColumn]:
     """Turn a friction force that points along the motion wherever it slides.
 
-    Notes
-    -----
     It has to be so with what the signal shows at rest, or where nothing presses, taken off and with
     it, as an offset of the sensor has any sign. Of a record without rests nothing is known: what
     creeps at a low speed rests by no means, and may have more friction than what goes fast.

@@ -27,8 +27,6 @@ _HELD = 1.1  # times what was set, or as much less: a measured load that is held
 def what_follows(layout: Layout, understood: Understood) -> Follows:
     """Find the quantities of a run that follow from others.
 
-    Notes
-    -----
     The rules are those of physics.toml; only what is stated with its unit is used.
     """
     return _derived(_Same(layout, understood)) if understood.kind == "run" else Follows()

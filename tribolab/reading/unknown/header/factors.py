@@ -41,10 +41,7 @@ _UNIT_OF_NAME = re.compile(r"[\[(](\w{1,12}/\w{1,12})[\])]")
 def unapplied_factors(layout: Layout) -> list[str]:
     """List the factors by which signals may still have to be multiplied: levers, gains, contacts.
 
-    Returns
-    -------
-    list of str
-        A sentence for each line that states one. Factors of one and single contacts are left out.
+    Each line that states one has a sentence. Factors of one and single contacts are left out.
     """
     lines = [line[:_MAX_LINE].strip() for line in layout.text_above()]
     if any(key_pattern("per_contact").search(label_of(line)) for line in lines):

@@ -49,11 +49,8 @@ def find_profile_length(layout: Layout) -> Amount | None:
 def find_stated(layout: Layout, *, placed: bool) -> list[Amount]:
     """Return what the text before a profile states of it, each under the name that checks know.
 
-    Returns
-    -------
-    list of Amount
-        ``tip_radius``, ``stated_length``, ``stated_pitch`` and ``stated_points``, if they are
-        stated just once.
+    These are ``tip_radius``, ``stated_length``, ``stated_pitch`` and ``stated_points``, if they are
+    stated just once.
     """
     values = _above(layout)
     whole = values.of("profile_length", unit="m", but=("part_of_trace",)).of("length_of_trace")

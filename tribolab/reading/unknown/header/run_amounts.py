@@ -140,10 +140,7 @@ def find_slide_roll_ratio(values: Sequence[Amount]) -> Amount | None:
 def as_entrainment_speed(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     """Take a speed next to a slide-to-roll ratio for the mean one of both surfaces.
 
-    Returns
-    -------
-    list of DraftColumn
-        A speed that no word calls the mean one is a guess.
+    A speed that no word calls the mean one is a guess.
     """
     speeds = [c for c in columns if c.used and c.quantity == "sliding_velocity"]
     in_column = any(c.used and c.quantity == "slide_roll_ratio" for c in columns)

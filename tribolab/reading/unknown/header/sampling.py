@@ -73,10 +73,7 @@ def find_pace(
 ) -> Sampling | None:
     """Return the speed of a position that gives the time, such as a crosshead's.
 
-    Returns
-    -------
-    Sampling or None
-        None unless the text states one speed, and the position does nothing but go on.
+    It is None unless the text states one speed, and the position does nothing but go on.
     """
     names = {column.quantity for column in columns if column.used}
     way = next((c for c in columns if c.used and c.quantity == "position"), None)

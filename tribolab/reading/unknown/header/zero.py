@@ -28,10 +28,7 @@ _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "") -> Amount | None:
     """Return the zero of the friction signal that a file states and that is still in the signal.
 
-    Returns
-    -------
-    Amount or None
-        Also None if it is unknown whether it was subtracted: see `zero_in_doubt`.
+    It is None if it is unknown whether it was subtracted: see `zero_in_doubt`.
     """
     zero = _stated(values, unit)
     in_it = said == "in it" or (not said and _is_still_in(layout, zero))

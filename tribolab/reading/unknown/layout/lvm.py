@@ -20,10 +20,7 @@ _DIMENSIONS = {"Time": "s", "Frequency": "Hz"}
 def units_above(layout: Layout) -> dict[int, str]:
     """Return the units of the columns (from 1) from the lines above the names.
 
-    Returns
-    -------
-    dict
-        Empty for files that are not LabVIEW's.
+    It is empty for files that are not LabVIEW's.
     """
     heading, said = layout.heading, _said_above(layout)
     if heading is None:
