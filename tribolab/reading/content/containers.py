@@ -12,7 +12,7 @@ from tribolab.reading.content.model import Content, Piece
 from tribolab.reading.content.steps import started
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 from tribolab.reading.dialect.columns import AGAIN, ReadColumn, resolve, scales_of, symbols
-from tribolab.reading.dialect.containers import name_and_unit, open_as, tables_of
+from tribolab.reading.dialect.containers import name_and_unit, open_as, table_of
 from tribolab.reading.dialect.file_layout import Marks
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.raw.clocks import OneClock, on_one_clock
@@ -23,7 +23,7 @@ from tribolab.units.conversion import conversion
 
 
 def read_columns(path: Path, dialect: Dialect) -> Content:
-    """Read the columns of a file that names them; each of several tables is a piece.
+    """Read the columns of a file that names them.
 
     Parameters
     ----------
@@ -38,36 +38,22 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
         If the file is damaged, a column is missing or not numeric, or columns differ in length.
     """
     file = _opened(path, dialect)
-    tables = tables_of(file, dialect)
-    pieces = []
-    labels: dict[str, str] = {}
-    unused: dict[str, None] = {}
-    own: dict[str, str] = {}
-    scales: dict[str, tuple[float, float]] = {}
+    table = table_of(file, dialect)
+    signals, not_used = _resolved(path, table, dialect)
+    clocks = _one_clock(path, table, signals) if dialect.time.rate_pattern else None
+    columns = _in_si(path, table, signals, clocks)
     notes = dict(file.notes)
-    several = len(tables) > 1
-    for number, table in enumerate(tables, start=1):
-        signals, not_used = _resolved(path, table, dialect)
-        clocks = _one_clock(path, table, signals) if dialect.time.rate_pattern else None
-        columns = _in_si(path, table, signals, clocks)
-        if clocks is not None and clocks.others:
-            notes["interpolated"] = _interpolated(signals, clocks)
-        settings = [clocks.setting, *table.settings] if clocks else table.settings
-        parts = [text_of(file.settings)] if several else []
-        before = "\n".join(filter(None, [*parts, text_of(settings)]))
-        step = number if several else None
-        pieces.append(Piece(columns, step, started(before, path, dialect), before))
-        labels |= {s.quantity: f"{s.label} [{s.unit}]" for s in signals}
-        unused |= dict.fromkeys(not_used)
-        own |= symbols(signals, dialect)
-        scales |= scales_of(signals)
+    if clocks is not None and clocks.others:
+        notes["interpolated"] = _interpolated(signals, clocks)
+    before = text_of([clocks.setting, *table.settings] if clocks else table.settings)
     if dialect.marks is not None:
-        time = pieces[0].columns["time"]
-        pieces[0].columns["step"], more = _marked_steps(path, file, time, dialect.marks)
+        columns["step"], more = _marked_steps(path, file, columns["time"], dialect.marks)
         notes |= more
-    return Content(
-        path, sha256_of_file(path), pieces, labels, tuple(unused), {}, notes, own, scales
-    )
+    piece = Piece(columns, None, started(before, path, dialect), before)
+    labels = {s.quantity: f"{s.label} [{s.unit}]" for s in signals}
+    unused, own = tuple(dict.fromkeys(not_used)), symbols(signals, dialect)
+    sha256, scales = sha256_of_file(path), scales_of(signals)
+    return Content(path, sha256, [piece], labels, unused, {}, notes, own, scales)
 
 
 def _opened(path: Path, dialect: Dialect) -> RawFile:

@@ -37,15 +37,15 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
     return read_sheet(path, header.sheet, header.line or 1, header.skip, units_below=below)
 
 
-def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
+def table_of(file: RawFile, dialect: Dialect) -> RawTable:
     """Return the whole file as one table; of TDMS only the groups of the dialect's columns."""
     if dialect.format != "tdms":
-        return [file.as_one_table()]
+        return file.as_one_table()
     groups = {column.group for column in dialect.column}
     read = [table for table in file.tables if table.name in groups]
     whole = file._replace(tables=tuple(read)).as_one_table()
     # names of channels exclude their group
-    return [whole._replace(columns=tuple(c for table in read for c in table.columns))]
+    return whole._replace(columns=tuple(c for table in read for c in table.columns))
 
 
 def name_and_unit(column: RawColumn) -> tuple[str, str | None]:
@@ -57,8 +57,8 @@ def name_and_unit(column: RawColumn) -> tuple[str, str | None]:
 def column_names(path: Path, dialect: Dialect) -> set[str]:
     """Return the column names of a file, with and without units; empty if it is damaged."""
     try:
-        tables = tables_of(open_as(path, dialect), dialect)[:1]
+        table = table_of(open_as(path, dialect), dialect)
     except Exception:  # then it cannot be from this instrument
         return set()
-    named = [name_and_unit(column) for table in tables for column in table.columns]
+    named = [name_and_unit(column) for column in table.columns]
     return {name for name, _ in named} | {f"{name} [{unit}]" for name, unit in named if unit}

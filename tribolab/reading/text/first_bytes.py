@@ -57,11 +57,6 @@ class File(NamedTuple):
     size: int
     head: bytes
 
-    @property
-    def container(self) -> str:
-        """Format with named columns; "" for lines of text."""
-        return "" if self.format == "text" else self.format
-
 
 def peek(path: str | Path, *, binary: bool = False) -> File:
     """Inspect the start of a file; for a compressed file, of its content.
