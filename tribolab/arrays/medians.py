@@ -156,10 +156,7 @@ def _near(
 
 
 def _quantile_bracket(ordered: np.ndarray, below: int, known: int, share: float) -> _About | None:
-    """Return the numbers around a quantile from the part of them above a lower bound.
-
-    None if it is not among them.
-    """
+    """Return the numbers around a quantile above a lower bound; None if it is not there."""
     rank = share * (known - 1)
     first = int(np.floor(rank))
     last = first if first == rank else first + 1

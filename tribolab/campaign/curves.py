@@ -17,6 +17,7 @@ from tribolab.campaign.runs.stage import RunHandle
 from tribolab.campaign.settings.naming.run_names import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import digest, write_data
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.core.errors import TribolabError
 from tribolab.core.provenance import sha256_of
 from tribolab.core.wording import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, explain, load_label
@@ -233,7 +234,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
         reason,
         points_found,
         tuple(budget_rows(curve, known)),
-        str(curve.attrs["uncertainty_says"]),
+        SegmentAttributes.of(curve.attrs).uncertainty_says,
         _model_inputs(frictions),
         traction,
         *_temperature(frictions),

@@ -263,17 +263,7 @@ def _openings(
 def _nested_separation(
     stiffness: np.ndarray, slope2: np.ndarray, mean_inverse: np.ndarray, gamma: float
 ) -> np.ndarray:
-    """Return the mean separation of the area at each magnification, due to finer roughness.
-
-    Parameters
-    ----------
-    stiffness
-        p A0/(A(zeta) E*) (pressure, magnification).
-    slope2
-        Cumulative int q^3 C dq (magnification).
-    mean_inverse
-        1/q on each panel (magnification - 1).
-    """
+    """Return the mean separation at each magnification due to finer roughness; 1/q by panel."""
     size = slope2.size
     row, panel = np.triu_indices(size - 1)
     start, stop = (np.sqrt(np.maximum(slope2[panel + i] - slope2[row], 0)) for i in (0, 1))

@@ -239,10 +239,7 @@ def _base(
 def _all_ends(
     coarse: _Given, varied: list[Variation], start: SolvedCurve, refit: bool
 ) -> tuple[np.ndarray, np.ndarray, list[dict[str, str]]]:
-    """Return friction (variation, end, speed), relative change of the refitted sigma_f, validity.
-
-    The numbers are NaN for missing ends.
-    """
+    """Return friction (variation, end, speed), change of sigma_f, validity; NaN if missing."""
     reference = start.curve
     stress = coarse.parameters.interface.shear_stress
     aim = reference["friction_coefficient"].values

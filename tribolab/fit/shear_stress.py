@@ -235,13 +235,7 @@ def runs_p_value(residual: np.ndarray) -> float:
 
 
 def _over_speed(measured: xr.Dataset) -> xr.Dataset:
-    """Return a measured curve sorted by speed; segments are combined to a curve first.
-
-    Raises
-    ------
-    AnalysisError
-        If `measured` is not a curve over sliding speeds.
-    """
+    """Return a measured curve sorted by speed; segments are combined to a curve first."""
     given = measured.get("friction_coefficient")
     if given is not None and given.dims == ("segment",):
         measured = measured_stribeck_curve([measured])

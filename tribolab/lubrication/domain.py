@@ -197,15 +197,7 @@ def _tail(power: int, start: float, constant: float) -> float:
 
 
 def _cell_count(cells: int, decay: float) -> int:
-    """Return the number of cells with the usual resolution at a narrow contact edge.
-
-    Parameters
-    ----------
-    cells
-        Requested number of cells.
-    decay
-        Decay length of the contact pressure with the film, over the gap; 0 for smooth surfaces.
-    """
+    """Return the number of cells with the usual resolution at a narrow contact edge."""
     if not decay:
         return cells
     edge = (decay / 1.9) ** (2 / 3)

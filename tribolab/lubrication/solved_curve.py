@@ -152,10 +152,7 @@ def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str,
 def _row(
     system: System, point: SolvedSpeed, force: float, hertz: float, area: np.ndarray
 ) -> dict[str, float]:
-    """Return the values of a curve at one speed, for given contact area ratios of its cells.
-
-    `area` contains the ratios of the requested theory, and of the other one (2, cells).
-    """
+    """Return values of a curve at one speed, for area ratios of both theories (2, cells)."""
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
     real_length, otherwise = area @ mesh.weight * problem.half_width

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from pydantic import ValidationError
 
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.metrology.budget_curve import curve_uncertainty
@@ -104,7 +105,7 @@ def known_uncertainties(
     AnalysisError
         If a name is not known, or its statement is invalid.
     """
-    own = friction.attrs.get("uncertainty", {})
+    own = RunAttributes.of(friction.attrs).uncertainty
     known = {name: Known(**entry) for name, entry in own.items() if name in NAMES}
     for name in stated or {}:
         if name not in NAMES:

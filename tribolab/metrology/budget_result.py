@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.core.errors import AnalysisError
 from tribolab.metrology.budget_parts import coverage_factor, part_name, part_words
 from tribolab.reading.dialect.uncertainty import NAMES, Known
@@ -39,7 +40,7 @@ class UncertaintyBudget:
     @property
     def caveats(self) -> str:
         """Omissions of the uncertainty, as text; "" if it is complete."""
-        return str(self.data.attrs.get("uncertainty_says", ""))
+        return SegmentAttributes.of(self.data.attrs).uncertainty_says
 
     def table(self, at: int | None = None) -> pd.DataFrame:
         """Return the budget of one value, by default a typical one, as a table.

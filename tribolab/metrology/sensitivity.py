@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.friction.coefficient.reversal import RESTS, WEIGHED
 from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
 from tribolab.friction.zero.of_run import PAIRED
@@ -81,7 +82,8 @@ def readings_of(friction: xr.Dataset) -> SegmentReadings:
     load = _values(friction, "normal_force", np.nan)
     pair = _values(friction, "pair", -1).astype(int)
     sign = _values(friction, "direction", 1.0)
-    offset = str(friction.attrs.get("offset", ""))
+    about = SegmentAttributes.of(friction.attrs)
+    offset = about.offset
     both = (pair >= 0) & (offset in PAIRED)
     change, middle = nothing, nothing
     if both.any() and "normal_force" in friction:
@@ -99,7 +101,7 @@ def readings_of(friction: xr.Dataset) -> SegmentReadings:
         np.full(mu.size, by_itself) & ~both,
         _values(friction, "normal_force_offset", 0.0) != 0,
         int(pair.max(initial=-1)) + 1 >= _MIN_LOOPS,
-        str(friction.attrs.get("middle_of_loop", "")),
+        about.middle_of_loop,
     )
 
 

@@ -81,10 +81,7 @@ def _root(task: PaperTask) -> xr.Dataset:
 
 
 def _origin(task: PaperTask) -> dict[str, str]:
-    """Return the sources of a task's result: files, or the published constants alone.
-
-    Without files there is no checksum; the settings are then the constants.
-    """
+    """Return the sources of a task's result: files, or the published constants alone."""
     if task.scans is not None:
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
         return source_attributes(sources_of_surface(task.scans)) | {

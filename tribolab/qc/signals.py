@@ -110,10 +110,7 @@ def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, 
 
 
 class _EqualRuns(NamedTuple):
-    """Runs of identical values: their lengths, increasing, their counts, and the long runs.
-
-    `long` contains the first sample and the end of each run (stretch, 2).
-    """
+    """Runs of identical values: lengths, increasing; counts; first and end of the long runs."""
 
     lengths: np.ndarray
     counts: np.ndarray
@@ -241,10 +238,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
 
 
 def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return the readings of a slowly refreshed signal, and the reading of each sample.
-
-    Returns None unless most readings repeat: in a clipped signal only those at the end do.
-    """
+    """Return readings of a slowly refreshed signal and of each sample; None if few repeat."""
     if values.size < 2 or values.size > _MAX_EXAMINED:
         return None
     changes = np.concatenate([[True], values[1:] != values[:-1]])

@@ -98,17 +98,7 @@ def friction_row(row: Row) -> Row:
 
 
 class _LongTable(NamedTuple):
-    """Table that is never in memory as a whole.
-
-    Parameters
-    ----------
-    file
-        Name of the table.
-    rows
-        Function that yields the rows each time it is called.
-    columns
-        Columns of a table without rows; without rows and columns it is not written.
-    """
+    """Table that is never in memory as a whole; without rows and columns it is not written."""
 
     file: str
     rows: Callable[[], Iterator[Row]]

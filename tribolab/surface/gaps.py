@@ -240,22 +240,7 @@ def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
 def _window_factors(
     missing: np.ndarray, left: np.ndarray, logarithms: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return factors by which gaps change a result more than gaps placed partly on bridges.
-
-    Parameters
-    ----------
-    missing
-        Truth (scan, x).
-    left
-        Share of heights that are left (trial, scan).
-    logarithms
-        Whether a result is a logarithm (result).
-
-    Returns
-    -------
-    tuple
-        Factors on the mean change (result, scan), and on its scatter (scan).
-    """
+    """Return factors on mean change (result, scan) and scatter (scan) for gaps."""
     there = 1.0 - missing.mean(axis=1)
     lost = np.log(np.maximum(left, 1.0 / missing.shape[1]) / there).mean(axis=0)
     fresh = (there - left).mean(axis=0) / np.where(there < 1.0, 1.0 - there, 1.0)
@@ -270,10 +255,7 @@ def _window_factors(
 def _move_gaps(
     missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return gaps of each scan, moved and mirrored at random along some axes.
-
-    Also returns the row from which each row of a map takes its gaps, (scan, y).
-    """
+    """Return gaps of each scan, moved and mirrored along some axes, and the rows used, (scan, y)."""
     moved = np.empty_like(missing)
     came = np.empty(missing.shape[:2], dtype=int)
     for scan, gaps in enumerate(missing):  # loop over scans

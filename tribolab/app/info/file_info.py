@@ -14,6 +14,7 @@ from tribolab.app.quick import importing, plain_arrays_only
 from tribolab.app.ranges import range_of
 from tribolab.arrays.reversals import reversals
 from tribolab.campaign.engine.stage import Stage
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import ReadError, TribolabError, message_for, shown
 from tribolab.core.wording import Count, explain
 from tribolab.reading import cures
@@ -86,7 +87,7 @@ def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> 
         return []
     facts = file_facts(log, path, instrument)
     whole = facts["left_out"] or facts["are_points"] or facts["steps"]
-    if whole or log.attrs.get("time_source") != "recorded":
+    if whole or RunAttributes.of(log.attrs).time_source != "recorded":
         return []
     header = part.lines - facts["rows"]
     facts["rows"], facts["longest_interval_s"] = part.lines_of_whole - header, None

@@ -416,10 +416,7 @@ def _column(draft: Draft, typed: str) -> DraftColumn:
 def _ask_unit(
     column: DraftColumn, names: Sequence[str], known: DraftColumn | None, ask: Ask
 ) -> Worth:
-    """Ask for the unit of a column, unless the file states a suitable unit.
-
-    For a column with known quantity, only the unit is asked.
-    """
+    """Ask for the unit of a column, unless the file states a suitable unit."""
     name = next((name for name in names if known is not None and known.quantity == name), "")
     asked = (name,) if name else tuple(names)
     stated = column.file_unit or ""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.core.attributes import RunAttributes, SegmentAttributes
 from tribolab.core.errors import TribolabError
 from tribolab.core.wording import Count
 
@@ -47,7 +48,7 @@ def _try_run(file: Path, dialect: Path) -> str:
     run = read_run(file, dialect, pair=False)
     time = run["time"].values
     text = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
-    if run.attrs.get("rows_are") == "points":
+    if RunAttributes.of(run.attrs).rows_are == "points":
         text = f"{Count(len(time)):result|results}, each at one speed"
     if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.variables):
         return f"{text}; no friction coefficient yet: nothing holds the friction"
@@ -103,7 +104,7 @@ def _coefficients(friction: xr.Dataset) -> str:
 def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
     """Whether the direction of sliding is unknown; a signed set-point gives it."""
     unknown = bool(segments["sliding_speed"].isnull().any())
-    by_set_speed = segments.attrs["velocity_source"] == "set speed"
+    by_set_speed = SegmentAttributes.of(segments.attrs).velocity_source == "set speed"
     signed = "set_speed" in run and bool((run["set_speed"] < 0).any())
     return unknown or (by_set_speed and not signed)
 

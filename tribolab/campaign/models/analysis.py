@@ -248,10 +248,7 @@ def _with_other_area(computed: xr.Dataset) -> xr.Dataset:
 
 
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
-    """Return the ratio of the area with adhesion to the model's area at the load, and its bounds.
-
-    The ratio is 1 if the model includes adhesion.
-    """
+    """Return the ratio of the area with adhesion to the model's area at the load, and its bounds."""
     path = folder / model.surface_file
     adhesion = optional_data(path, "adhesion_loads")
     if adhesion is None or model.curve.medium not in adhesion.medium.values:
@@ -317,10 +314,7 @@ def _areas(
     curve: xr.Dataset,
     measured: xr.Dataset,
 ) -> dict[str, float]:
-    """Return measured and computed contact areas [m2], and the shear stress F/A [Pa] measured.
-
-    Areas and stress are those at the lowest measured speed of the fit.
-    """
+    """Return measured and computed areas [m2], and F/A [Pa], at the lowest fitted speed."""
     a = float(hertz_half_width(load, contact))
     nominal = float(np.pi * a**2 if contact.is_round else 2 * a * contact.force(1.0))
     slowest = curve.isel(sliding_speed=0)

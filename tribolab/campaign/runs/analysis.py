@@ -11,6 +11,7 @@ from tribolab.arrays.scratch import let_go
 from tribolab.campaign.runs.reading import Earlier, earlier_signals, note_reading
 from tribolab.campaign.runs.zeros import attributes
 from tribolab.campaign.settings.plan import PlannedRun
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import ConfigError
 from tribolab.units.stamping import stamp
 
@@ -166,7 +167,7 @@ def _evaluate(
 
 def _add_uncertainties(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
     """Return the signals with all stated calibration uncertainties, first the campaign's."""
-    stated = signals.attrs.get("uncertainty", {}) | run.uncertainty
+    stated = RunAttributes.of(signals.attrs).uncertainty | run.uncertainty
     return signals.assign_attrs(uncertainty=stated) if stated else signals
 
 
@@ -190,7 +191,7 @@ def _add_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
     """Return the signals with the set-points of the campaign file."""
     signals = read.copy()
     if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
-        missing = signals.attrs.get("companion_missing", "")
+        missing = RunAttributes.of(signals.attrs).companion_missing
         raise ConfigError(
             f"{signals.attrs['source']}: there is no second log"
             f"{missing and f' ({missing})'} whose clock could be shifted; "
@@ -215,9 +216,9 @@ def _add_stated_load(signals: xr.Dataset) -> xr.Dataset:
     load = signals.get("set_normal_force", signals.attrs.get("set_normal_force_N"))
     if load is None or "friction_force" not in signals or _LOADS & set(signals.variables):
         return signals
-    signals.attrs["derived"] = signals.attrs.get("derived", {}) | {"normal_force": "stated"}
+    derived = RunAttributes.of(signals.attrs).derived | {"normal_force": "stated"}
     stated = np.broadcast_to(load, signals.sizes["time"]).astype(float)
-    return stamp(signals.assign(normal_force=("time", stated)))
+    return stamp(signals.assign(normal_force=("time", stated)).assign_attrs(derived=derived))
 
 
 def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:

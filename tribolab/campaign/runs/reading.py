@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.store.catalogue import fingerprint_of
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import ReadError
 from tribolab.core.provenance import as_text, sha256_of
 from tribolab.reading.dialect.zero_reading import parse_zero
@@ -77,7 +78,7 @@ def _has_only_its_files(run: PlannedRun, attrs: Json) -> bool:
     A second log or blank run that is not among them may appear, disappear or change.
     """
     alone = len(str(attrs.get("source", "")).split("; ")) == len(run.files)
-    blank = any(parse_zero(str(text)).file for text in attrs.get("zeros_read", {}).values())
+    blank = any(parse_zero(str(text)).file for text in RunAttributes.of(attrs).zeros_read.values())
     return alone and not blank and "companion_missing" not in attrs
 
 

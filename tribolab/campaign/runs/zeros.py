@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.friction.decisions.rejected import kept
 from tribolab.records.parts import RunZero
 
@@ -22,8 +23,8 @@ _DIGITS = 6
 
 def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | float]:
     """Return the attributes of a friction result from which `zero_of` reads the zero."""
-    method = str(friction.attrs.get("offset", ""))
-    sure = all(d["status"] == "pass" for d in friction.attrs.get("zero_doubts", []))
+    about = SegmentAttributes.of(friction.attrs)
+    method, sure = about.offset, all(d["status"] == "pass" for d in about.zero_doubts)
     friction = kept(friction)
     if method in ("half loop", "zero load") and sure and "friction_force_offset" in friction:
         zeros = friction["friction_force_offset"].values

@@ -138,11 +138,7 @@ def _words(item: Any, table: type[BaseModel] | None) -> str:
 def _walk(
     model: type[BaseModel], location: tuple[str | int, ...]
 ) -> tuple[tuple[str | int, ...], type[BaseModel] | None]:
-    """Follow pydantic's location through the model.
-
-    Returns the path in the file (pydantic adds names of its own for unions and keys) and the
-    table that the last part belongs to.
-    """
+    """Return the path in the file of pydantic's location, and the table of its last part."""
     where: list[str | int] = []
     here: Any = model
     table: type[BaseModel] | None = None

@@ -295,10 +295,7 @@ def _extrapolated_slope(share: float, slope: float, last: float, asked: bool) ->
 def _extrapolate(
     measured: xr.Dataset, options: Json, q_low: float | None
 ) -> tuple[xr.Dataset, list[Finding]]:
-    """Extrapolate a spectrum; if no power law fits, keep the measured part only.
-
-    The roughness of a profile does not depend on waves it does not resolve.
-    """
+    """Extrapolate a spectrum; if no power law fits, keep the measured part only."""
     limits = {key: options[key] for key in ("q_high", "fit_decade") if key in options}
     low = options.get("q_low", q_low)
     first, last = (float(end) for end in measured.wavenumber.values[[0, -1]])

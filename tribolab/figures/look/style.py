@@ -240,10 +240,7 @@ def _measured(
 
 @contextlib.contextmanager
 def _share_text_cache() -> Iterator[None]:
-    """Let all renderers share one cache of texts.
-
-    By default every renderer has its own parser and cache.
-    """
+    """Let all renderers share one cache of texts and one parser."""
     own = vars(mpl_text)["TextToPath"]
     vars(mpl_text)["TextToPath"] = _CachedTexts
     try:

@@ -80,10 +80,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
 
 
 def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Arguments]:
-    """Return colour, shade and marker of each curve: the colour of the surface, dark at low load.
-
-    A dry curve has the colour of the wet one at its load, but another marker.
-    """
+    """Return colour of the surface, shade by load, and marker by medium, of each curve."""
     own = [str(name) or surface for name in curves["surface"].values]
     colours = surface_colours([*surfaces, *own])
     loads = curves["load"].values

@@ -140,10 +140,7 @@ def _stretch(number: int, segments: xr.Dataset) -> tuple[Span, Span]:
 def _shaded(
     parts: Sequence[Stroke], places: Sequence[tuple[Span, Span]], panel: int, *, named: bool
 ) -> list[Mark]:
-    """Return the shading of the segments: dark, with light trimmed ends.
-
-    With very many segments, neighbours of one direction are shaded together.
-    """
+    """Return the shading of the segments: dark, with light trimmed ends; of many, together."""
     marks = []
     last = ""
     every = max(1, -(-len(parts) // _MAX_MARKED))

@@ -91,10 +91,7 @@ def _evaluate(model: JointModel, white: np.ndarray, theta: np.ndarray) -> _State
 def _find_modes(
     model: JointModel, white: np.ndarray, before: np.ndarray, start: np.ndarray
 ) -> PosteriorModes:
-    """Find the most probable parameters by Gauss-Newton, with shortened steps if needed.
-
-    The search for a mode that is negligible compared with the best is stopped.
-    """
+    """Find the most probable parameters by Gauss-Newton; stop at negligible modes."""
     where = model.parameters
     free = where.spread > 0
     scale = where.spread[free]
@@ -138,15 +135,7 @@ def _take_step(
     step: np.ndarray,
     expected: np.ndarray,
 ) -> np.ndarray:
-    """Move some states by a step, or its best share; return which states cannot be improved.
-
-    Parameters
-    ----------
-    which
-        Indices of the states in `state` (moved).
-    step, expected
-        Gauss-Newton step, and the expected decrease of the size (moved).
-    """
+    """Move some states by a step, or its best share; return which states cannot be improved."""
     before, white = state.at(which), white[which]
     best = _evaluate(model, white, before.theta + step)
     # a step that gains much less than expected is too long or too short

@@ -12,6 +12,7 @@ import xarray as xr
 from tribolab.arrays.broadcasting import of_runs, over_dims
 from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.core.untyped import Json
 from tribolab.friction.coefficient.reversal import reversal_of
@@ -292,7 +293,7 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
         return _table(data, reasons, zero, run, "")
 
     ratio = (turn * means - signs.sign * zero.value) / divisor
-    stated = run.attrs.get("uncertainty", {})
+    stated = RunAttributes.of(run.attrs).uncertainty
     both = reversal_of(zero, pair, divisor, middle, ratio, rests, stated)
     pointwise: list[_RatioRemarks] = []
 
@@ -344,10 +345,7 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
 def _errors(
     estimates: list[Estimate], whole: Callable[[np.ndarray], np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Return standard errors, degrees of freedom and U95, over the path and beyond it (segment).
-
-    `whole` adds the errors of the zeros to standard errors of the signal.
-    """
+    """Return standard errors, degrees of freedom and U95, over the path and beyond it (segment)."""
     errors: dict[str, np.ndarray] = {}
     for end, name in (("", "friction_coefficient"), ("_beyond", "friction_coefficient_beyond")):
         wide = NORMAL * whole(_column(estimates, f"u95{end}") / NORMAL)
@@ -443,7 +441,7 @@ def _ratio_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
     )
     turn = signs.sign * signs.unfold
     about = turn * means - signs.sign * zero.value
-    stated = run.attrs.get("uncertainty", {})
+    stated = RunAttributes.of(run.attrs).uncertainty
     both = reversal_of(zero, pair, alike, middle, about, None, stated)
     read = about + signs.sign * both.tilted
     mu, tilt = both.remove_tilt(read, signs.sign, alike)

@@ -113,11 +113,7 @@ def _top_peak(
 
 
 def _smooth(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray, int, bool]:
-    """Return running means over the fewest readings in which the peak is significant.
-
-    Also returns the number of readings, and whether the peak is significant; if not, the means are
-    over an eighth of the start.
-    """
+    """Return running means over the fewest readings with a clear peak, their number, if clear."""
     total = np.concatenate([[0.0], np.cumsum(ratio)])
     width = 1
     while True:

@@ -31,10 +31,7 @@ _END_SHARE = 0.1  # share of the readings; if their mean is the highest, the for
 
 
 class _Start(NamedTuple):
-    """Start of one segment: samples before and within it, and the duration of the rest.
-
-    If the force still rises at `last`, samples up to `latest` are included.
-    """
+    """Start of a segment: samples before and within (to `latest` if force rises), and the rest."""
 
     number: int
     first: int

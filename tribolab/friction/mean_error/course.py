@@ -66,11 +66,7 @@ def line_through(records: np.ndarray) -> LineFit:
 def _error_of_size(
     rest: np.ndarray, shapes: np.ndarray, fitted: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the standard error of a fitted shape's size from the residuals' spectrum (record).
-
-    `shapes` is (record, sample), or (1, sample) if all records share one. Also returns the degrees
-    of freedom.
-    """
+    """Return a fitted shape's standard error from the residuals, and its freedom (record)."""
     count = rest.shape[1]
     sieve = sieve_of(rest, fitted)
     cosines = dct(shapes, norm="ortho", axis=1)[:, 1:]

@@ -52,10 +52,7 @@ def _contrasts(k: int) -> np.ndarray:
 
 
 def _scores(groups: Sequence[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return z of each repeat (sample, repeat), one for two repeats, and the scatter elsewhere.
-
-    `groups` are (sample, repeat).
-    """
+    """Return z of each repeat (sample, repeat), one for two repeats, and the scatter elsewhere."""
     squares = [(values @ _contrasts(values.shape[1]).T) ** 2 for values in groups]
     scores, scatters = [], []
     for own, values in enumerate(groups):

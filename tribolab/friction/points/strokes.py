@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.friction.points import limits
 from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_scatter
 from tribolab.friction.points.speed_groups import speed_groups, sweeps_of
@@ -69,7 +70,7 @@ def _observe_run(friction: xr.Dataset, run: int) -> Observations:
     wide = np.where(np.isfinite(wide), wide, NORMAL * sem)
     wanted = np.abs(column("set_speed"))
     pairs = np.full(value.size, -1.0)
-    if "pair" in friction and friction.attrs.get("offset") in PAIRED:
+    if "pair" in friction and SegmentAttributes.of(friction.attrs).offset in PAIRED:
         pairs = friction["pair"].values.astype(float)
     known = np.isfinite(value) & (speed > 0)
     shared = column(f"{name}_shared_sem")

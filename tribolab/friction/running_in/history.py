@@ -230,10 +230,7 @@ def _sliding_clock(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.
 def _coefficients(
     run: xr.Dataset, friction: xr.Dataset, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the times and friction coefficients of the samples of a segment before trimming.
-
-    Their mean over the trimmed segment equals its friction coefficient.
-    """
+    """Return times and friction coefficients of a segment, whose mean is its coefficient."""
     own = {str(name): float(friction[name].values[number]) for name in _READ if name in friction}
     time = run["time"].values
     first = int(np.searchsorted(time, own["start"], "left"))

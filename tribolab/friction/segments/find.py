@@ -8,6 +8,7 @@ import xarray as xr
 from tribolab.arrays.broadcasting import of_runs, over_dims, stated_value
 from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import AnalysisError, UnitError, shown
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.loaded import loaded
@@ -144,7 +145,8 @@ def find_segments(
     constancy = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source, standstill = velocity_source(run), 0.0
-    if run.attrs.get("rows_are") == "points":
+    rows_are = RunAttributes.of(run.attrs).rows_are
+    if rows_are == "points":
         return _use_points(run, source)
     if stroke_middle is not None:
         return _use_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
@@ -177,7 +179,7 @@ def find_segments(
         return plateaus
     if by_chance and not shuttles(run):
         return plateaus
-    if run.attrs.get("rows_are") == "either":
+    if rows_are == "either":
         return _use_points(run, source)
     if "stroke_m" not in run.attrs and not shuttles(run):
         return _with_sparse_strokes(run, plateaus)

@@ -183,10 +183,7 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
 
 
 def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return speed around each block, first difference, second differences (near and distant).
-
-    All three differences are scaled to the standard deviation of white noise.
-    """
+    """Return speed, first and second (near, distant) differences, scaled to white noise."""
     far = max(1, min(_LAG_BLOCKS, (velocity.size - 1) // 8))
     left, here, right = velocity[: -2 * far], velocity[far:-far], velocity[2 * far :]
     before = velocity[far - 1 : -far - 1]

@@ -154,10 +154,7 @@ def _strokes_of(
 def _straight_part(
     time: np.ndarray, position: np.ndarray, constancy: ConstancyLimits, noise: float
 ) -> tuple[int, int, float] | None:
-    """Return the samples [first, last) and the velocity [m/s] of a stroke without its dwells.
-
-    None if the speed of the stroke is not constant.
-    """
+    """Return samples and velocity [m/s] of a stroke without its dwells; None if not constant."""
     low, high = float(position.min()), float(position.max())
     margin = (1 - limits.INNER_PART_OF_STROKE.value) / 2 * (high - low)
     inside = np.flatnonzero((position > low + margin) & (position < high - margin))

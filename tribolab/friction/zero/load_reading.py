@@ -9,6 +9,7 @@ import xarray as xr
 
 from tribolab.arrays.chunks import pieces
 from tribolab.arrays.medians import median
+from tribolab.core.attributes import RunAttributes
 from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import Doubt, ZeroReference
 from tribolab.friction.zero.without_sliding import stretches_of
@@ -61,7 +62,7 @@ def load_reading(
     known = pressed[np.isfinite(pressed) & (pressed > 0)]
     if not known.size:
         return nothing
-    stated = "normal_zero" in dict(run.attrs.get("uncertainty", {}))
+    stated = "normal_zero" in RunAttributes.of(run.attrs).uncertainty
     retained = nothing if stated else _retained(offset, float(median(known)))
     found = [retained, LoadReading(_creep(run, segments, parts, pressed), ())]
     if zero.method != "half loop":

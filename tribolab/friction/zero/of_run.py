@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.arrays.medians import median, median_of_known
+from tribolab.core.attributes import RunAttributes, SegmentAttributes
 from tribolab.core.errors import AnalysisError, UnitError, shown
 from tribolab.friction.zero import limits
 from tribolab.friction.zero.limits import LOADS_DIFFER
@@ -151,8 +152,8 @@ def _zero_from_file(run: xr.Dataset, name: str) -> tuple[float, str]:
     unit = quantity(name).unit
     ending = "" if unit == "1" else f"_{unit}"
     error = float(run.attrs.get(f"{name}_zero_sem{ending}", np.nan))
-    read = str(dict(run.attrs.get("zeros_read", {})).get(name, ""))
-    stated = str(dict(run.attrs.get("zeros_stated", {})).get(name, ""))
+    about = RunAttributes.of(run.attrs)
+    read, stated = about.zeros_read.get(name, ""), about.zeros_stated.get(name, "")
     return error, read or (f"the text of the file ({stated})" if stated else "")
 
 
@@ -180,7 +181,7 @@ def _torque(given: str | float) -> float | None:
 
 def _arm(run: xr.Dataset, name: str) -> float:
     """Return the lever arm [m] that converted a torque to the friction force."""
-    formula = str(dict(run.attrs.get("derived", {})).get(name, ""))
+    formula = RunAttributes.of(run.attrs).derived.get(name, "")
     made = _FROM_TORQUE.fullmatch(formula)
     arm = float("nan")
     if made is not None:
@@ -234,7 +235,7 @@ def _fold(
         stated = run.attrs.get(f"{name}_rectified")
     if stated is not None:
         return Fold("rectified", "") if stated else SIGNED
-    if segments.attrs.get("velocity_source") not in ("recorded", "position"):
+    if SegmentAttributes.of(segments.attrs).velocity_source not in ("recorded", "position"):
         return SIGNED  # the direction was derived from the force, or there is none
     rest = float(median(rests.value)) if rests is not None else float("nan")
     normal = run["normal_force"].values if "normal_force" in run and parts else None

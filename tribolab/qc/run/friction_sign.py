@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.core.limit import Limit
 from tribolab.core.wording import Count
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
@@ -58,9 +59,9 @@ def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    if subject.segments.attrs.get("velocity_source") not in ("recorded", "position"):
+    if subject.segment_about.velocity_source not in ("recorded", "position"):
         raise Skip("the direction of sliding was not recorded")
-    if subject.run.attrs.get("speed_from") == "stroke":
+    if subject.about.speed_from == "stroke":
         raise Skip("the direction of strokes was taken from the sign of friction")
     friction, signal = subject.friction, subject.required_friction_signal
     name = "friction_coefficient" if "friction_coefficient" in friction else "friction_force"
@@ -96,7 +97,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
     """
     friction = subject.friction
     direction = friction["direction"].values
-    method = str(friction.attrs.get("offset", ""))
+    method = SegmentAttributes.of(friction.attrs).offset
     both = all((direction[wrong] == d).any() for d in (1, -1))
     if _unsigned_speed(subject) and right.any():
         return (

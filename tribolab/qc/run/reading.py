@@ -39,7 +39,7 @@ def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
 
 
 def _uncovered_rows(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    alone = int(subject.run.attrs.get("rows_not_covered", 0))
+    alone = subject.about.rows_not_covered
     if not alone:
         return []
     share = alone / (alone + subject.time.size)

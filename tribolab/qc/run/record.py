@@ -107,7 +107,7 @@ def _step_changes(subject: RunSubject) -> np.ndarray:
 
 
 def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    joined = str(subject.run.attrs.get("clock_joined", ""))
+    joined = subject.about.clock_joined
     joins = [Result("pass", "time", joined, noted=True)] if joined else []
     if not {"step", "cycle"} & set(subject.run):
         if joined:
@@ -145,7 +145,7 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = "{count:sample repeats|samples repeat} one value longer than noise allows, {where}"
     # computed by formulas, from a load in the file header
-    stated = subject.run.attrs.get("derived", {})
+    stated = subject.about.derived
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
         steady = bool(np.nanmin(values) == np.nanmax(values))
@@ -184,10 +184,10 @@ def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
 
 def _is_stated(subject: RunSubject, name: str) -> bool:
     """Return whether a force is computed only from stated values, which change with the step."""
-    formula = subject.run.attrs.get("derived", {}).get(name)
+    formula = subject.about.derived.get(name)
     if formula is None or formula == "stated":
         return formula is not None
-    return not names_in(parse_formula(formula)) & set(subject.run.attrs.get("columns_used", {}))
+    return not names_in(parse_formula(formula)) & set(subject.about.columns_used)
 
 
 def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

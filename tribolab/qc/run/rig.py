@@ -135,12 +135,12 @@ def _normal_force_scatter(subject: RunSubject, limits: Mapping[str, float]) -> l
 
 def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     segments = subject.segments
-    if segments.attrs.get("velocity_source") not in ("recorded", "position"):
+    if subject.segment_about.velocity_source not in ("recorded", "position"):
         raise Skip("the speed was not measured")
     if "set_speed" in segments:
         target = np.abs(segments["set_speed"].values)
     else:
-        target = np.full(segments.sizes["segment"], subject.run.attrs.get("set_speed_m_s", np.nan))
+        target = np.full(segments.sizes["segment"], subject.about.set_speed_m_s)
     if not np.isfinite(target).any():
         raise Skip("the set-point of the speed is not known")
     error = segments["sliding_speed"].values / np.where(target > 0, target, np.nan) - 1
@@ -151,7 +151,7 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     if not {"sliding_velocity", "position"} <= set(subject.run):
         raise Skip("velocity and position were not both recorded")
     results = []
-    if standstill := float(subject.segments.attrs.get("standstill_s", 0.0)):
+    if standstill := subject.segment_about.standstill_s:
         text = (
             f"the position does not change for at least {duration(standstill)} while the recorded "
             "velocity is not zero; segments and speeds are taken from the position"
@@ -200,15 +200,13 @@ def _slope(subject: RunSubject, part: slice, noise: float) -> tuple[float, float
 
 
 def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    attrs = subject.run.attrs
-    if "clock_shift_source" not in attrs:
+    source, error = subject.about.clock_shift_source, subject.about.clock_shift_uncertainty_s
+    if not source:
         raise Skip("one clock only")
-    source = str(attrs["clock_shift_source"])
     if source == "given":
         return [Result("pass", "time", "the shift between the clocks was given", unit="s")]
-    error = float(attrs.get("clock_shift_uncertainty_s", np.nan))
     if source == "none" or not np.isfinite(error):
-        why = attrs.get("clock_shift_refused", "the force does not follow the motion")
+        why = subject.about.clock_shift_refused or "the force does not follow the motion"
         text = f"the clock shift cannot be found from the signals ({why}): state clock_shift"
         return [Result("fail", "time", text, unit="s")]
     share = 2.0 * error / float(np.min(subject.durations))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.core.attributes import RunAttributes
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.reading.netcdf.table_schema import load_schema
 from tribolab.units.quantities import QUANTITIES
@@ -96,8 +97,7 @@ def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
     if not any(name in run for name in _SPEED) and "set_speed_m_s" not in run.attrs:
         text = "the speed is unknown (none of " + ", ".join(_SPEED) + ")"
         cure = "Let the dialect say the speed: a column, [speed], or a value 'set_speed'."
-        if "companion_missing" in run.attrs:
-            other = run.attrs["companion_missing"]
+        if other := RunAttributes.of(run.attrs).companion_missing:
             text += f": the companion log {other} is not there"
             cure = f"Put {other} next to this file, or give both."
         missing.append((text, cure))

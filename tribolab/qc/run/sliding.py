@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.core.limit import Limit
 from tribolab.core.wording import Count
 from tribolab.friction.coefficient import limits as of_trends
@@ -121,7 +122,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     speed, mu = friction["sliding_speed"].values, friction[name].values
     sem, wide = (friction[f"{name}_beyond_{end}"].values for end in ("sem", "U95"))
     pairs = np.full(mu.size, -1.0)
-    if "pair" in friction and friction.attrs.get("offset") in PAIRED:
+    if "pair" in friction and SegmentAttributes.of(friction.attrs).offset in PAIRED:
         pairs = friction["pair"].values.astype(float)
     moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
     means = []

@@ -35,7 +35,8 @@ _STRENGTH = Limit(
 def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     """Report strokes without a segment although their position changes."""
     segments = subject.segments
-    if segments.attrs.get("velocity_source") != "position" or "stroke_middle" in segments.attrs:
+    about = subject.segment_about
+    if about.velocity_source != "position" or about.stroke_middle > 0:
         return []
     try:
         strokes = find_strokes(subject.run)
@@ -65,7 +66,7 @@ def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[
 def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     # friction; steps of shear stress of a rheometer have a shear rate instead of a speed
     unknown = np.isnan(subject.friction["sliding_speed"].values)
-    if unlike := subject.run.attrs.get("strokes_unlike_s"):
+    if unlike := subject.about.strokes_unlike_s:
         often = subject.run.attrs["stroke_frequency_Hz"]
         text = (
             f"friction reverses at the stated {often:.3g} Hz during a part of the run only; "

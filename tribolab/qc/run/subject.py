@@ -11,6 +11,7 @@ from tribolab.arrays.chunks import PIECE, one_by_one, pieces, stretches
 from tribolab.arrays.medians import median_in_pieces, median_of_known
 from tribolab.arrays.reversals import reversals
 from tribolab.arrays.scratch import filled
+from tribolab.core.attributes import RunAttributes, SegmentAttributes
 from tribolab.core.errors import AnalysisError
 from tribolab.core.wording import number as number_text
 from tribolab.core.wording import speed_text
@@ -102,11 +103,23 @@ class RunSubject:
             raise Skip("no segment of constant speed was found")
         return self._segments_or_skip
 
+    @cached_property
+    def about(self) -> RunAttributes:
+        """Attributes of the run."""
+        return RunAttributes.of(self.run.attrs)
+
+    @property
+    def segment_about(self) -> SegmentAttributes:
+        """Attributes of the segments, or the reason for skipping the check."""
+        return SegmentAttributes.of(self.segments.attrs)
+
     @property
     def is_points(self) -> bool:
         """Whether the rows are results of the instrument instead of samples."""
         found = self._segments_or_skip
-        return not isinstance(found, Skip) and found.attrs.get("rows_are") == "points"
+        return not isinstance(found, Skip) and (
+            SegmentAttributes.of(found.attrs).rows_are == "points"
+        )
 
     @cached_property
     def _friction_or_skip(self) -> xr.Dataset | Skip:
@@ -304,7 +317,7 @@ class RunSubject:
         """Return the number of sign changes of friction in segments of unknown direction."""
         values = self.signals[self.required_friction_signal]
         unknown = np.isnan(self.segments["sliding_speed"].values)
-        if self.segments.attrs.get("velocity_source") in ("set speed", "step"):
+        if self.segment_about.velocity_source in ("set speed", "step"):
             unknown[:] = True  # a set-point has no direction
         return np.array(
             [

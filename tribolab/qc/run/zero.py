@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from tribolab.core.attributes import SegmentAttributes
 from tribolab.friction.zero.parts import Doubt
 from tribolab.qc.register import Check, Result
 from tribolab.qc.run.subject import RunSubject
@@ -13,7 +14,7 @@ def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     friction = subject.friction
     signal = subject.required_friction_signal
     doubts = _doubts(subject, "zero_reference", signal)
-    method = str(friction.attrs.get("offset", ""))
+    method = SegmentAttributes.of(friction.attrs).offset
     return doubts or [Result("pass", signal, f"the zero is from: {method}")]
 
 
@@ -25,7 +26,7 @@ def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
     """Return results for each doubt about the zero, without flags on samples."""
-    doubts: list[Doubt] = list(subject.friction.attrs.get("zero_doubts", []))
+    doubts: list[Doubt] = SegmentAttributes.of(subject.friction.attrs).zero_doubts
     results = []
     for doubt in doubts:
         if doubt["check"] != check:

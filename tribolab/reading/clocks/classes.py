@@ -132,26 +132,7 @@ def coarse_shift(
 def _sums_by_lag(
     sums: list[Array], classes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], list[Array], Iterator[tuple[Array, Array]]]:
-    """Sum samples by class of a second grid, for every shift between the two grids.
-
-    Parameters
-    ----------
-    sums
-        Number, sum and sum of squares of the samples (cell).
-    classes
-        Class on the second grid (cell).
-
-    Returns
-    -------
-    lags, whole, by_class
-        All shifts [cells], the three sums over the whole second grid (lag), and number and sum for
-        each of its classes (lag).
-
-    Notes
-    -----
-    For long intervals of one class, sums are differences of cumulative sums; for frequent changes
-    they are cross-correlations by FFT.
-    """
+    """Return shifts [cells], sums of samples (lag), number and sum by class of a second grid."""
     wide, cells = len(classes), len(sums[0])
     lags = np.arange(-wide, cells)
     ends = np.flatnonzero(np.diff(classes, prepend=-1, append=-1))

@@ -293,11 +293,7 @@ def _starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -
 
 
 def _contradicted(ways: dict[str, Estimate], stroke: float) -> bool:
-    """Whether starts, confirmed by two methods, exclude the fit by the motion.
-
-    It is excluded if the difference exceeds the errors of both and the tolerance for the duration
-    of a stroke [s].
-    """
+    """Whether starts, confirmed by two methods, exclude the fit by the motion (stroke [s])."""
     starts, motion = ways["starts"], ways.get("motion")
     if motion is None or motion.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
         return True

@@ -175,10 +175,7 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
 
 
 def _readme_text(archive: zipfile.ZipFile, names: list[str], first: bytes) -> bytes:
-    """Return the readmes of an archive, to be used as header of its text table.
-
-    Readmes that are not plain text in the table's encoding are left out.
-    """
+    """Return the readmes of an archive in the table's encoding, as header of its text table."""
     if b"\0" in first or not _is_utf8(first):
         return b""
     texts = []

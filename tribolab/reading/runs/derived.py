@@ -95,10 +95,7 @@ def add_derived(
 
 
 def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: Dialect) -> None:
-    """Add the rotation speed stated in the header as a column.
-
-    It applies to a run at one speed; for several speeds it would be ambiguous.
-    """
+    """Add the rotation speed stated in the header as a column, if the run has one speed."""
     turns = [v for v in dialect.value if v.unit is not None and v.si_unit == "rad/s"]
     stated = [number for value in turns if (number := _number(value, attrs))]
     velocity = np.abs(columns.get("sliding_velocity", np.zeros(0)))

@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import PathLike
+from tribolab.core.attributes import RunAttributes
 from tribolab.reading.dialect.find import Instrument, known_dialects, load_dialect
 from tribolab.reading.runs.row_counts import ROW_ATTRIBUTES, rows_in_words
 from tribolab.reading.signals import Signals
@@ -61,10 +62,11 @@ def file_facts(log: Signals, path: PathLike, instrument: Instrument | None = Non
     """
     time, signals, attrs = log
     gaps = np.diff(time)
-    labels = attrs.get("columns_used", {})
+    about = RunAttributes.of(attrs)
+    name, unused = about.instrument, about.columns_not_used
     columns: dict[str, ColumnFacts] = {
         name: {
-            "label": labels.get(name, ""),
+            "label": about.columns_used.get(name, ""),
             "unit": QUANTITIES[name].unit if name in QUANTITIES else "",
             "minimum": float(np.fmin.reduce(values.ravel())),
             "maximum": float(np.fmax.reduce(values.ravel())),
@@ -72,12 +74,10 @@ def file_facts(log: Signals, path: PathLike, instrument: Instrument | None = Non
         for name, values in signals.items()
         if values.dtype.kind in "fiu"
     }
-    name = str(attrs.get("instrument", ""))
     known = known_dialects()
     title = load_dialect(instrument or name).title if instrument or name in known else ""
     known_attrs = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
     known_attrs |= {"columns_not_used", "columns_used", "instrument", *ROW_ATTRIBUTES}
-    unused = str(attrs.get("columns_not_used", ""))
     return {
         "file": str(path),
         "instrument": name,
@@ -85,7 +85,7 @@ def file_facts(log: Signals, path: PathLike, instrument: Instrument | None = Non
         "columns": columns,
         "not_used": unused.split("; ") if unused else [],
         "rows": len(time),
-        "are_points": attrs.get("rows_are") == "points",
+        "are_points": about.rows_are == "points",
         "duration_s": float(time[-1]) if len(time) else 0.0,
         "interval_s": float(median(gaps)) if len(gaps) else None,
         "longest_interval_s": float(gaps.max()) if len(gaps) else None,

@@ -135,10 +135,7 @@ def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
 
 
 def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
-    """Return a text on the agreement, and on systematic residuals.
-
-    The largest residual is a share of the peak friction or, at low friction, a factor.
-    """
+    """Return a text on the agreement, and on systematic residuals."""
     ordered = attrs["runs_p_value"] < _UNLIKELY
     if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:
         return "the model describes the curve within the errors"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.core.attributes import RunAttributes, SegmentAttributes
 from tribolab.core.wording import duration, many, percent
 from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.oscillation import limits
@@ -101,14 +102,15 @@ def notices_of(
             say("suspect", STEPS, differ)
     for text in _remarks(friction):
         say("note", "friction", text)
-    if str(friction.attrs.get("offset", "")).startswith("none"):
-        say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
+    offset = SegmentAttributes.of(friction.attrs).offset
+    if offset.startswith("none"):
+        say("note", "friction", f"offset of the force: {offset}")
     if (track := position_range(segments)) is not None:
         low, high = (f"{1e3 * end:.4g}" for end in track)
         text = f"what lies outside positions {low} to {high} mm of each stroke"
         say("note", STROKE_ENDS, text)
-    if (share := segments.attrs.get("stroke_middle")) is not None and segments.sizes["segment"]:
-        share = float(share)
+    about, reading = SegmentAttributes.of(segments.attrs), RunAttributes.of(run.attrs)
+    if (share := about.stroke_middle) > 0 and segments.sizes["segment"]:
         whole, used = times_of_strokes(segments)
         strokes = many(segments.sizes["segment"], "stroke")
         text = f"what lies outside the middle {percent(share)} of the way of each of {strokes}"
@@ -121,11 +123,11 @@ def notices_of(
         say("note", "inertia", inertia)
     if slip is not None and (distance := distance_to_critical(slip)):
         say("note", STICK_SLIP, distance)
-    if unused := str(run.attrs.get("columns_not_used", "")):
-        say("note", "columns", f"not used: {unused}")
-    if doubtful := str(run.attrs.get("left_out", "")):
-        say("note", DOUBTFUL_COLUMNS, f"left out, as no result needs them: {doubtful}")
-    if segments.attrs.get("rows_are") == "points":
+    if reading.columns_not_used:
+        say("note", "columns", f"not used: {reading.columns_not_used}")
+    if reading.left_out:
+        say("note", DOUBTFUL_COLUMNS, f"left out, as no result needs them: {reading.left_out}")
+    if about.rows_are == "points":
         say("note", "rows", _RESULTS)
     return notices
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.core.attributes import RunAttributes, SegmentAttributes
 from tribolab.core.wording import many, percent
 from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.decisions.rejected import kept
@@ -60,7 +61,7 @@ def facts_of(
         stick_slip=stick_slip_of(slip),
         omitted=(*left_out(segments), *ends_of_strokes(segments)),
         segments=plain_rows(friction_columns(friction)),
-        uncertainty_says=str(friction.attrs.get("uncertainty_says", "")),
+        uncertainty_says=SegmentAttributes.of(friction.attrs).uncertainty_says,
         flagged=tuple(flagged_spans(run)),
     )
 
@@ -82,12 +83,12 @@ def main_quantity(friction: xr.Dataset) -> str:
 def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
     """Return the facts extended by those of the run itself."""
     time = np.asarray(run["time"], float)
-    attrs = run.attrs
-    shift = {k: float(v) for k, v in attrs.items() if k in _SHIFT and not isinstance(v, str)}
+    about = RunAttributes.of(run.attrs)
+    shift = {k: float(v) for k, v in run.attrs.items() if k in _SHIFT and not isinstance(v, str)}
     return replace(
         facts,
-        instrument=str(attrs.get("instrument", "")),
-        quality=str(attrs.get("quality", "")),
+        instrument=about.instrument,
+        quality=about.quality,
         checks=tuple(
             CheckRow(
                 row["check"],
@@ -100,23 +101,22 @@ def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
             )
             for row in findings_of(run)
         ),
-        recorded_at=str(attrs.get("recorded_at", "")),
+        recorded_at=about.recorded_at,
         duration_s=float(time[-1] - time[0]) if time.size else 0.0,
         samples=int(time.size),
         signals=tuple(sorted(str(n) for n in run.data_vars if run[n].dims == ("time",))),
-        columns_not_used=tuple(filter(None, str(attrs.get("columns_not_used", "")).split("; "))),
+        columns_not_used=tuple(filter(None, about.columns_not_used.split("; "))),
         clock_shift_s=shift.get("clock_shift_s"),
         clock_shift_uncertainty_s=shift.get("clock_shift_uncertainty_s"),
-        clock_shift_source=str(attrs.get("clock_shift_source", "")),
-        inertia=inertia_text(attrs),
-        history=str(attrs.get("history", "")),
+        clock_shift_source=about.clock_shift_source,
+        inertia=inertia_text(run.attrs),
+        history=about.history,
     )
 
 
 def findings_of(run: xr.Dataset) -> list[FindingRow]:
     """Return the results of the checks on a run as plain rows."""
-    rows: list[FindingRow] = run.attrs.get("findings", [])
-    return rows
+    return RunAttributes.of(run.attrs).findings
 
 
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
@@ -145,15 +145,15 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         values_of(friction, f"{of}_shared_sem", value.size),
         pairs_of(friction),
     )
-    middle = friction.attrs.get("stroke_middle")
+    about = SegmentAttributes.of(friction.attrs)
     levels = value[finite]
-    if middle is not None:  # one of hundreds of strokes has little weight
+    if np.isfinite(about.stroke_middle):  # one of hundreds of strokes has little weight
         levels = np.array([value[part].mean() for part in segments_by_speed(speed, finite)])
     return RunFacts(
         quantity=name,
-        offset=str(friction.attrs.get("offset", "")),
-        trim=plain_value(friction.attrs.get("trim")) if middle is None else None,
-        velocity_source=_speed_text(friction.attrs),
+        offset=about.offset,
+        trim=plain_value(about.trim) if np.isnan(about.stroke_middle) else None,
+        velocity_source=_speed_text(about),
         sliding_speed_min_m_s=plain_value(np.nanmin(speed, initial=np.inf)),
         sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
         value_min=plain_value(levels.min()) if levels.size else None,
@@ -165,13 +165,12 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     )
 
 
-def _speed_text(attrs: Mapping[str, Any]) -> str:
+def _speed_text(about: SegmentAttributes) -> str:
     """Return the source of the speed, and the part of each stroke used, as text."""
-    source = str(attrs.get("velocity_source", ""))
+    source, middle = about.velocity_source, about.stroke_middle
     if source == "recorded":
-        source = _SPEED_FROM.get(str(attrs.get("speed_from", "")), source)
-    middle = attrs.get("stroke_middle")
-    used = f"; of each whole stroke the middle {float(middle):.0%} is used" if middle else ""
+        source = _SPEED_FROM.get(about.speed_from, source)
+    used = f"; of each whole stroke the middle {middle:.0%} is used" if middle > 0 else ""
     return f"{source}{used}"
 
 
@@ -270,7 +269,7 @@ def wider_error(friction: xr.Dataset, name: str, ending: str) -> np.ndarray:
 
 def pairs_of(friction: xr.Dataset) -> np.ndarray:
     """Return the number of the pair of each segment; -1 for none."""
-    if "pair" not in friction or friction.attrs.get("offset") not in PAIRED:
+    if "pair" not in friction or SegmentAttributes.of(friction.attrs).offset not in PAIRED:
         return np.full(friction.sizes["segment"], -1.0)
     return np.asarray(friction["pair"], float)
 
@@ -325,11 +324,11 @@ def times_of_strokes(segments: xr.Dataset) -> tuple[float, float]:
 
 def ends_of_strokes(segments: xr.Dataset) -> list[LeftOut]:
     """Return the parts of the strokes outside a chosen middle, as a row."""
-    share = segments.attrs.get("stroke_middle")
-    if share is None or not segments.sizes["segment"]:
+    share = SegmentAttributes.of(segments.attrs).stroke_middle
+    if np.isnan(share) or not segments.sizes["segment"]:
         return []
     whole, used = times_of_strokes(segments)
-    reason = f"ends of strokes, outside the middle {percent(float(share))} of the way"
+    reason = f"ends of strokes, outside the middle {percent(share)} of the way"
     return [LeftOut(reason, 2 * segments.sizes["segment"], whole - used)]
 
 

@@ -21,17 +21,7 @@ if TYPE_CHECKING:
 
 
 class _Opened:
-    """Surfaces of a campaign, and their data by group.
-
-    Parameters
-    ----------
-    surfaces
-        Surfaces with results.
-    order
-        Names in the order of the campaign, which sets colours.
-    folder
-        The results folder with their data files.
-    """
+    """Surfaces of a campaign with results, their order, which sets colours, and their folder."""
 
     def __init__(
         self, surfaces: Sequence[SurfaceOutcome], order: Sequence[str], folder: Path

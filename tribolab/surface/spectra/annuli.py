@@ -137,16 +137,7 @@ def _merged_annuli(annuli: Annuli, ends: list[int]) -> Annuli:
 def _node_values(
     annuli: Annuli, error: np.ndarray, fitted: FittedLaw
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return C at the rms radius of each annulus, from its mean and the local power law.
-
-    If the lowest annulus was merged from several, it has a node at both ends and one at the
-    roll-off, and follows the fitted law; the error of that law is added.
-
-    Returns
-    -------
-    tuple of numpy.ndarray
-        Wavenumbers [1/m], C [m4] there, and its relative standard error.
-    """
+    """Wavenumbers [1/m], C [m4] at the rms radius of each annulus, and its relative error."""
     low, high, mean = annuli.edges[:-1], annuli.edges[1:], annuli.mean
     node = np.sqrt(0.5 * (low**2 + high**2))
     if mean.size > 1:

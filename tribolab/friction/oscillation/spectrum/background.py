@@ -52,10 +52,7 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
 
 
 def _best_model(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
-    """Return the model (model, band) and the shift of its level with the least cost.
-
-    Candidates are selected in single precision, in half the time, and computed in full precision.
-    """
+    """Return the model (model, band) and the shift of its level with the least cost."""
     roughly, off = rest.astype(np.float32), np.empty(rest.shape, np.float32)
     cost = np.stack(
         [_cost(roughly, np.float32(s), weight.astype(np.float32), off) for s in _LEVEL_SHIFTS]
