@@ -438,9 +438,9 @@ def test_a_key_of_all_runs_moves_to_the_campaign_and_one_of_a_single_run_does_no
 
 def test_the_limits_of_detection_are_the_defaults_of_the_function():
     parameters = inspect.signature(find_segments).parameters
-    stated = {name: limit.value for name, limit in DETECTION.items() if limit.value == limit.value}
-    assert stated == {name: parameters[name].default for name in stated}
-    assert all(parameters[name].default is None for name in DETECTION.keys() - stated)
+    assert {name: limit.value for name, limit in DETECTION.items()} == {
+        name: parameters[name].default or 0.0 for name in DETECTION
+    }
 
 
 def test_an_old_key_that_contradicts_the_new_one_is_refused(folder):

@@ -255,7 +255,7 @@ def _window_factors(
 def _move_gaps(
     missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return gaps of each scan, moved and mirrored along some axes, and the rows used, (scan, y)."""
+    """Return gaps of each scan, moved and mirrored at random, and the rows used, (scan, y)."""
     moved = np.empty_like(missing)
     came = np.empty(missing.shape[:2], dtype=int)
     for scan, gaps in enumerate(missing):  # loop over scans

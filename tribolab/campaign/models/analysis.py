@@ -248,7 +248,7 @@ def _with_other_area(computed: xr.Dataset) -> xr.Dataset:
 
 
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
-    """Return the ratio of the area with adhesion to the model's area at the load, and its bounds."""
+    """Return the area with adhesion over the model's area at the load, and the bounds."""
     path = folder / model.surface_file
     adhesion = optional_data(path, "adhesion_loads")
     if adhesion is None or model.curve.medium not in adhesion.medium.values:

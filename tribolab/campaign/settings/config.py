@@ -205,7 +205,7 @@ class Campaign(Table):
         of_curves = {"speed_tolerance"}
         options = self.segments.model_dump(exclude_none=True, exclude=of_curves)
         limits = self.qc.limits.get("segments", {})
-        options |= {name: value for name, value in limits.items() if name in DETECTION}
+        options |= {name: value for name, value in limits.items() if name in DETECTION and value}
         if entry.segments is not None:
             options |= entry.segments.model_dump(
                 exclude_unset=True, exclude_none=True, exclude=of_curves

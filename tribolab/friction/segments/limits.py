@@ -1,7 +1,5 @@
 """Limits for the detection of sliding and rest."""
 
-import math
-
 from tribolab.core.limit import Count, Limit
 
 _STROKES = "judgement; checked by tests/detection/stroke_patterns.py, seeds from 10 000"
@@ -9,14 +7,12 @@ _TRICKY = "judgement; checked by tests/detection/tricky_runs.py, seeds 0 to 9"
 DETECTION = {  # of constant speed: defaults of `find_segments`
     "resolution": Limit(0.02, "1", "relative speed difference that separates two plateaus"),
     "drift": Limit(0.10, "1", "relative speed change within a plateau, above which it is a ramp"),
-    "min_samples": Count(10, "1", "samples in a segment"),
-    "min_duration": Limit(0.0, "s", "duration of a segment"),
+    "min_samples": Count(10, "1", "fewest samples in a segment"),
+    "min_duration": Limit(0.0, "s", "shortest duration of a segment"),
     "max_gap": Limit(
-        math.nan, "s", "pause between two samples of a segment; nan: a twentieth of the segment"
+        0.0, "s", "pause between two samples of a segment; 0: a twentieth of the segment"
     ),
-    "rest_speed": Limit(
-        math.nan, "m/s", "speed of the slider at rest; nan: 1e-5 of the highest speed"
-    ),
+    "rest_speed": Limit(0.0, "m/s", "speed of the slider at rest; 0: 1e-5 of the highest speed"),
 }
 MIN_SHARE_OF_SPEED = Limit(
     0.5, "1", "a position that moves at less than half of the recorded speed stands still"

@@ -65,8 +65,8 @@ def velocity_source(run: xr.Dataset) -> str:
             "strokes, say stroke and frequency there, with source = 'stroke'"
         )
     if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.data_vars):
-        held = ", ".join(map(str, run.data_vars)) or "nothing"
-        raise AnalysisError(f"{name_of(run)}: neither friction nor speed is recorded, but {held}")
+        found = ", ".join(map(str, run.data_vars)) or "nothing"
+        raise AnalysisError(f"{name_of(run)}: neither friction nor speed is recorded, but {found}")
     raise AnalysisError(
         f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"
         " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; a campaign "
