@@ -25,23 +25,12 @@ _CLAUSES = re.compile(
     rf"{CLAUSE_END}|\b(?:(?<!load )(?<!force )(?<!weight )on|{alternatives('clause')})\b"
 )
 _LABEL = re.compile(r"\W*(?P<label>[^\W\d][^:;=\t：；]{0,40}?)[\s\"]*[:;=\t：；]")
-_RATIO = re.compile(r"(?<![\d:.,/])(\d+(?:[.,]\d+)?)\s?([:/])\s?(\d+(?:[.,]\d+)?)(?![\d:/])")
 _TIMES_SIGNS = ("x", "X", "×")
 _SINGLE = re.compile(
     rf"\W*(?P<key>[^\W\d][^:=\t;,\d]{{0,60}}?)\s*[:=\t;, ]\s*[x×]?\s?(?P<number>{NUMBER})"
     r"\s?(?P<unit>[x×]|[^\W\d]{1,12})?\W*(?:[(（].{0,80})?$",
     re.IGNORECASE,
 )
-
-
-class Ratio(NamedTuple):
-    """Two numbers separated by a colon or slash, with their position in the line."""
-
-    one: float
-    other: float
-    sign: str
-    start: int
-    end: int
 
 
 class Phrase(NamedTuple):
@@ -105,18 +94,6 @@ def label_of(line: str) -> str:
     """
     label = _LABEL.match(line[:LONGEST_LINE])
     return normalise_label(label["label"]) if label else ""
-
-
-def ratios_in(line: str) -> list[Ratio]:
-    """Return the ratios such as 1:5 in a line.
-
-    >>> [(ratio.one, ratio.other) for ratio in ratios_in("Lever 1:5, at 12:01:05")]
-    [(1.0, 5.0)]
-    """
-    return [
-        Ratio(decimal(match[1]), decimal(match[3]), match[2], match.start(), match.end())
-        for match in _RATIO.finditer(line)
-    ]
 
 
 def single_number(line: str) -> tuple[str, float, str] | None:

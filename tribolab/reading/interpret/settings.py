@@ -144,17 +144,17 @@ def texts_of(lines: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     found = [(match["key"], match["text"].rstrip('"; ,')) for match in entries if match]
     alone = (_UNIT_ALONE.match(line.strip()) for line in lines)
     found += [(match["key"], match["unit"]) for match in alone if match and _is_of_unit(match)]
-    drives = (_matching_words("drive", line[:LONGEST_LINE]) for line in lines)
+    drives = (_said_of_drive(line[:LONGEST_LINE]) for line in lines)
     return (*found, *(("drive", text) for text in drives if text))
 
 
-def _matching_words(name: str, line: str) -> str:
-    """Return the words of a line that match an entry of sentences.toml; "" without any.
+def _said_of_drive(line: str) -> str:
+    """Return the words of a line that name a drive; "" without any.
 
-    >>> _matching_words("drive", "Tribómetro biela-manivela")
+    >>> _said_of_drive("Tribómetro biela-manivela")
     'biela-manivela'
     """
-    match = text_pattern(name).search(plain_text(line))
+    match = text_pattern("drive").search(plain_text(line))
     words = list(re.finditer(r"[^\W_]+", line)) if match else []
     for place in reversed(range(len(words))):
         for last in words[place:]:

@@ -12,7 +12,6 @@ from tribolab.core.errors import shown
 from tribolab.reading.interpret.phrases import (
     label_of,
     phrases,
-    ratios_in,
     single_number,
 )
 from tribolab.reading.lexicon.lexicon import (
@@ -25,13 +24,14 @@ from tribolab.reading.lexicon.lexicon import (
     plain_words,
     text_pattern,
 )
-from tribolab.reading.numbers import Number, numbers_in
+from tribolab.reading.numbers import Number, decimal, numbers_in
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import MICRO
 
 _MAX_LINE = 200  # characters of a line that are looked at
 _MAX_CONTACTS = 12
+_RATIO = re.compile(r"(?<![\d:.,/])(\d+(?:[.,]\d+)?)\s?:\s?(\d+(?:[.,]\d+)?)(?![\d:/])")  # 1:5
 _QUOTED = 3
 _RAW = re.compile(rf"[mk{MICRO}u]?V|{alternatives('count')}", re.IGNORECASE)
 _EQUALS = re.compile(rf"\s?{alternatives('equals')}\s?", re.IGNORECASE)
@@ -101,12 +101,12 @@ def _unapplied(line: str) -> str:
     if contacts_in(line):
         return f"friction and load are both of all contacts, or both of one: '{shown(line, 40)}'"
     as_they_stand = f"signals are read as they stand, not times '{shown(line, 40)}'"
-    for ratio in ratios_in(line):
-        key = line[: ratio.start]
-        named = ratio.sign == ":" and (mentions("factor", key) or mentions("transmission", key))
-        if named and any(key_pattern("load").search(s.key) for s in phrases(line[ratio.end :])):
+    for ratio in _RATIO.finditer(line):
+        key = line[: ratio.start()]
+        named = mentions("factor", key) or mentions("transmission", key)
+        if named and any(key_pattern("load").search(s.key) for s in phrases(line[ratio.end() :])):
             return ""  # what the lever makes of a weight is said behind it
-        if named and ratio.one != ratio.other:
+        if named and decimal(ratio[1]) != decimal(ratio[2]):
             return as_they_stand
     if mentions("lever", line) and any(not number.unit and number.value != 1 for number in numbers):
         return as_they_stand

@@ -45,8 +45,7 @@ def zero_in_doubt(
     zero = _stated(values, unit)
     if zero is None or said or _is_still_in(layout, zero):
         return None
-    taken_off = mentions("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
-    return None if taken_off or _another_line_says("zero_is_taken_off", layout, zero) else zero
+    return None if _is_taken_off(layout, zero) else zero
 
 
 def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
@@ -62,10 +61,7 @@ def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[
         if _is_of_load(part_pattern("zero").sub("", value.key))
     ]
     return [
-        f"'{zero.text}' was taken off the load"
-        for zero in zeros
-        if not mentions("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
-        and not _another_line_says("zero_is_taken_off", layout, zero)
+        f"'{zero.text}' was taken off the load" for zero in zeros if not _is_taken_off(layout, zero)
     ]
 
 
@@ -100,6 +96,11 @@ def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     """Return the friction force column, from which a zero may be subtracted."""
     held = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
     return held[0] if len(held) == 1 else None
+
+
+def _is_taken_off(layout: Layout, zero: Amount) -> bool:
+    own = mentions("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
+    return own or _another_line_says("zero_is_taken_off", layout, zero)
 
 
 def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
