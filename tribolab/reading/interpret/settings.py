@@ -114,20 +114,20 @@ def amounts_of(lines: tuple[str, ...], most: int) -> Amounts:
         entry = _entry(line.rstrip())
         # a digit before the colon means a time of day, unless it is a step number
         if entry and (not entry["key"][-1].isdigit() or _STEP_TITLE.match(entry["key"])):
-            _add_unique(found, _of_entry(entry, units))
+            add_unique(found, _of_entry(entry, units))
             continue
         if pairs := _PAIR.findall(line):
             for pair in filter(None, map(_entry, pairs)):
                 one = _of_entry(pair, units)
                 start = one.pattern.removeprefix(r"^\s*")
-                _add_unique(found, one._replace(pattern=start, text=line.strip()))
+                add_unique(found, one._replace(pattern=start, text=line.strip()))
             continue
         strokes = False
         for phrase in phrases(line):
             if strokes and not phrase.key:  # "stroke 5 mm at 2 Hz"
                 phrase = phrase._replace(key="frequency")
             if amount := _of_phrase(phrase):
-                _add_unique(found, amount)
+                add_unique(found, amount)
             strokes = key_pattern("stroke").search(phrase.key) is not None
     return Amounts(found.values())
 
@@ -267,7 +267,7 @@ def _dimension(unit: str | None) -> str | None:
     return next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
 
 
-def _add_unique(found: dict[str, Amount], amount: Amount) -> None:
+def add_unique(found: dict[str, Amount], amount: Amount) -> None:
     """Store an amount under a unique name."""
     if amount.name in found and amount.key == found[amount.name].key:
         return

@@ -6,7 +6,7 @@ import re
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.file_names import amounts_of_name, speed_of_name
-from tribolab.reading.interpret.settings import amounts_of, texts_of
+from tribolab.reading.interpret.settings import add_unique, amounts_of, texts_of
 from tribolab.reading.unknown.layout.text_layout import Layout
 
 _MAX_REPEATED = 12  # a long preamble is not repeated in the dialect
@@ -21,11 +21,7 @@ def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
     found = {amount.name: amount for amount in amounts_of_name(layout.file.path.name)}
     above = _text_above(layout, bare=bare)
     for amount in amounts_of(above, (_MAX_OF_SCAN if bare else _MAX_REPEATED) - len(found)):
-        name, number = amount.name, 1
-        while name in found and not name.startswith("set_"):
-            number += 1
-            name = f"{amount.name}_{number}"
-        found.setdefault(name, amount._replace(name=name))
+        add_unique(found, amount)
     if (speed := speed_of_name(layout.file.path.name)) is not None:
         found.setdefault("set_speed", speed)
     return Amounts(_of_steps(amount, layout) for amount in found.values())
