@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from typer.testing import CliRunner
 
 import tribolab as tl
+from tribolab import cli
 from tribolab.app.info.file_info import file_lines
 from tribolab.core.errors import ReadError
 from tribolab.friction.segments.find import find_segments, why_no_segment
@@ -139,3 +141,31 @@ def test_a_log_that_broke_off_counts_as_its_siblings_do(tmp_path):
     (tmp_path / "notes.txt").write_text("as agreed\n", "utf-8")
     found = {path.name: what for path, what in contents_of(sorted(tmp_path.iterdir())).items()}
     assert found["run_3.csv"] == "run" and found["notes.txt"] == "scan"
+
+
+def info(file, *options):
+    return CliRunner().invoke(cli.app, ["info", str(file), *options]).output
+
+
+def test_what_options_state_is_missing_by_their_names(tmp_path):
+    columns = [0.1 * np.arange(ROWS), level(2), level(90, 1)]
+    file = write(tmp_path / "log.csv", "t [s],Friction [N],n [rpm]\n", columns)
+    assert "missing: the radius of the track, for the sliding speed: --radius 15mm" in info(file)
+    assert "missing: the load: --load 20N" in info(file)
+    said = info(file, "--load", "20 N", "--radius", "15mm")
+    assert f"tribolab run {file} --load '20 N' --radius 15mm (its results)" in said
+
+
+@pytest.mark.parametrize(
+    ("names", "asked"),
+    [
+        ("t [s],CH1 [N],CH2 [N]", "hold it: column 2 'CH1 [N]' or column 3 'CH2 [N]'?"),
+        ("t [s],Ft,n [rpm]", "friction_force, in which unit: N, mN or gf?"),
+    ],
+)
+def test_no_option_is_offered_if_more_than_options_is_missing(names, asked, tmp_path):
+    """msritj79/data_processing, the channels of a Kyowa logger."""
+    columns = [0.1 * np.arange(ROWS), level(2), level(90, 1)]
+    said = info(write(tmp_path / "log.csv", names + "\n", columns))
+    assert asked in said and "Missing: the load\n" in said
+    assert "State --" not in said and "(a force)" not in said

@@ -191,7 +191,7 @@ def left_open(draft: Draft) -> ReadError | None:
     if missing := lacks_distance(draft):
         return GuessedError(draft.path, asked, cures.SURFACE, missing, known)
     if asked or lacks_friction(draft):
-        lacks, options = missing_words(draft), missing_options(draft)
+        lacks, options = missing_words(draft), missing_options(draft, asked)
         by_option = missing_words(draft, by_option=True)
         return GuessedError(draft.path, asked, cures.RUN, lacks, known, options, by_option)
     return None

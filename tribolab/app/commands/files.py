@@ -152,8 +152,14 @@ def info(
 
             describe(files, write, write.stem, force=force, ask=ask)
             return
-        stated = Stated.of(load, radius, speed, rate)
-        instrument = instrument or describe_with(stated, files)
+        options = {
+            "instrument": instrument,
+            "load": load,
+            "radius": radius,
+            "speed": speed,
+            "rate": rate,
+        }
+        instrument = instrument or describe_with(Stated.of(load, radius, speed, rate), files)
         # imported late for a quick start
         from tribolab.app.quick import importing
 
@@ -178,7 +184,7 @@ def info(
         alone = len(described) == 1 and not described[0].error
         if alone and not is_modulus_file(described[0].file):
             file = shlex.quote(str(described[0].file))
-            file += f" --instrument {shlex.quote(instrument)}" if instrument else ""
+            file += "".join(f" --{name} {shlex.quote(x)}" for name, x in options.items() if x)
             say(f"next: tribolab check {file} (is it usable?), tribolab run {file} (its results)")
     raise typer.Exit(UNREADABLE if any(description.error for description in described) else 0)
 

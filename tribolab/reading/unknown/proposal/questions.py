@@ -175,10 +175,15 @@ def without_unit_and_missed(draft: Drafted) -> list[str]:
     return _unused(draft, _lacks(draft))
 
 
-def missing_options(draft: Drafted) -> list[str]:
-    """Return the options of the command line that state what a file lacks, with an example."""
-    lacks = (lack for lack in _lacks(draft) if isinstance(lack, MissingInput))
-    return sorted(lack.option for lack in lacks if lack.option)
+def missing_options(draft: Drafted, asked: Sequence[Question]) -> list[str]:
+    """Return the options of the command line that state all that a file lacks, with examples.
+
+    None where they do not: with a question that is open, or without friction.
+    """
+    lacks = _lacks(draft)
+    options = [lack.option for lack in lacks if isinstance(lack, MissingInput) and lack.option]
+    whole = len(options) == len(lacks) and not any(question.is_open for question in asked)
+    return sorted(options) if whole else []
 
 
 def _lacks(draft: Drafted) -> list[MissingInput | Uncalibrated]:
@@ -228,7 +233,7 @@ class GuessedError(ReadError):
         """Return the message for an audience."""
         cure = self.cure if isinstance(self.cure, str) else self.cure.message_for(audience)
         unclear = [f"Unclear: {question.line}" for question in self.asked]
-        lacks = self.by_option if audience == "terminal" and self.options else self.lacks
+        lacks = (self.by_option or self.lacks) if audience == "terminal" else self.lacks
         missing = [f"Missing: {lack}" for lack in lacks]
         told = f"Understood: {', '.join(self.understood) or 'nothing yet'}"
         if audience == "campaign":
