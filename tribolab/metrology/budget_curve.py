@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.core.attributes import RunAttributes
 from tribolab.friction.decisions.rejected import kept
 from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combine_parts, part_name
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
@@ -72,7 +73,7 @@ def curve_uncertainty(
     unstated: dict[str, bool] = {}
     for part, stated in zip(map(kept, frictions), known, strict=True):
         place, own, count = _point_of_segments(part, points)
-        met, instrument = count > 0, str(part.attrs.get("instrument", ""))
+        met, instrument = count > 0, RunAttributes.of(part.attrs).instrument
         runs += met
         observations += count
         instruments[instrument] = instruments.get(instrument, np.zeros(size, dtype=bool)) | met

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.core.attributes import RunAttributes
+
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
@@ -48,9 +50,8 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     table = pd.DataFrame.from_dict(rows, orient="index")
     # numbers formatted one by one: a column would use the digits of the largest
     table = table.astype({"lowest": object, "highest": object})
-    called = whole.attrs.get("columns_used")
-    if isinstance(called, dict):
-        table["column"] = [str(called.get(name, "")) for name in table.index]
+    if called := RunAttributes.of(whole.attrs).columns_used:
+        table["column"] = [called.get(name, "") for name in table.index]
     return table.rename_axis("variable")
 
 

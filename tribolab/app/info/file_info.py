@@ -233,7 +233,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 
     traces = list(read_scan(path, instrument).values())
     scan = traces[0]
-    name = str(scan.attrs.get("instrument", ""))
+    name = RunAttributes.of(scan.attrs).instrument
     axes = [axis for axis in ("x", "y") if scan.sizes.get(axis, 1) > 1]
     lines = [
         f"{path}: {_title_of(name, instrument)}",

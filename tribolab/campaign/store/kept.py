@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from tribolab.campaign.store.catalogue import Store
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import ReadError
 from tribolab.records.part_records import ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding
@@ -29,7 +30,7 @@ def kept_text(path: Path, why: str) -> str:
 
     try:
         root = read_groups(path, [None], only={"": ()})[None]
-        when = str(root.attrs.get("history", "")).split(" ")[0]
+        when = RunAttributes.of(root.attrs).history.split(" ")[0]
     except ReadError:
         when = ""
     return f"kept from {when or 'before'}: {why}"

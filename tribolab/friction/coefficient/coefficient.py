@@ -20,6 +20,7 @@ from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import compute_both
 from tribolab.friction.run_out import turn_remark, turned
 from tribolab.friction.segments.limits import MAX_LOST_CONTACT
+from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.statistics import (
     NORMAL,
     Estimate,
@@ -175,7 +176,7 @@ def _segment_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings)
         result = _ratio_friction(run, segments, settings)
     else:
         raise AnalysisError(
-            f"{_name(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
+            f"{name_of(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
         )
     bare = segments.drop_dims("omitted") if "omitted" in segments.dims else segments
     bare = bare.drop_vars([name for name in result.data_vars if name in bare])
@@ -183,23 +184,19 @@ def _segment_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings)
     return judged(both).assign_attrs({**segments.attrs, **result.attrs})
 
 
-def _name(run: xr.Dataset) -> str:
-    return str(run.attrs.get("source", "run"))
-
-
 def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
     """Raise an error if `segments` is not a result of `find_segments` on this run."""
     if "segment" not in getattr(segments, "sizes", ()):
         raise AnalysisError(
             f"a {type(segments).__name__} without segments was given as segments",
-            where=_name(run),
+            where=name_of(run),
             cure=Cure(notebook="give what tl.find_segments(run) returns"),
         )
     mine, theirs = (d.attrs.get("source_sha256") for d in (run, segments))
     outside = False
     if segments.sizes["segment"]:
         if not run.sizes.get("time"):
-            raise AnalysisError(f"{_name(run)}: the run has no samples")
+            raise AnalysisError(f"{name_of(run)}: the run has no samples")
         time = run["time"].values
         slack = 1e-6 * (time[-1] - time[0])
         outside = bool(
@@ -209,7 +206,7 @@ def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
     if outside or (mine and theirs and mine != theirs):
         raise AnalysisError(
             "the segments lie outside this run or come from another file",
-            where=_name(run),
+            where=name_of(run),
             cure=Cure(notebook="find them in the same run with find_segments(run)"),
         )
 

@@ -110,7 +110,7 @@ class RunSubject:
 
     @property
     def segment_about(self) -> SegmentAttributes:
-        """Attributes of the segments, or the reason for skipping the check."""
+        """Attributes of the segments; raises `Skip` without any."""
         return SegmentAttributes.of(self.segments.attrs)
 
     @property

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from tribolab.arrays.chunks import chosen, concatenate_parts
+from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import ReadError, shown
 from tribolab.core.provenance import CONVENTIONS, as_text, history_line
 from tribolab.core.untyped import Json
@@ -99,7 +99,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     zeros_of_derived(columns, signals, attrs)
     read = take_zeros(columns, time, _zeros_of_formulas(attrs, dialect, zero), blank, where)
     if read:
-        attrs |= read | {"zeros_read": {**_by_quantity(attrs, "zeros_read"), **read["zeros_read"]}}
+        attrs |= read | {"zeros_read": RunAttributes.of(attrs).zeros_read | read["zeros_read"]}
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect, of_steps)
@@ -112,17 +112,12 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     return Signals(time, columns, attrs)
 
 
-def _by_quantity(attrs: Json, name: str) -> Mapping[str, Any]:
-    """Return an attribute that is a mapping by quantity; empty without one."""
-    stated = attrs.get(name, {})
-    return stated if isinstance(stated, Mapping) else {}
-
-
 def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[str, str]:
     """Return the source of the zeros of computed quantities."""
     rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
     rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
-    return {name: text for name, text in rules.items() if name in _by_quantity(attrs, "derived")}
+    derived = RunAttributes.of(attrs).derived
+    return {name: text for name, text in rules.items() if name in derived}
 
 
 def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
