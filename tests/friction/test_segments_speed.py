@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 from made_runs import velocity_run
 
-from tribolab.friction.segments.find import find_segments, why_no_segment
+from tribolab.friction.segments.find import find_segments
+from tribolab.friction.segments.no_segment import why_no_segment
 
 
 def position_run(velocity, dt=0.01, noise=0.0, seed=0):

@@ -11,7 +11,8 @@ import tribolab as tl
 from tribolab import cli
 from tribolab.app.info.file_info import file_lines
 from tribolab.core.errors import ReadError
-from tribolab.friction.segments.find import find_segments, why_no_segment
+from tribolab.friction.segments.find import find_segments
+from tribolab.friction.segments.no_segment import why_no_segment
 from tribolab.reading.folder_content import contents_of
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 from tribolab.reading.unknown.proposal.questions import questions

@@ -42,7 +42,8 @@ def _try_run(file: Path, dialect: Path) -> str:
     # imported late for a quick start
     from tribolab.arrays.reversals import reversals
     from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
-    from tribolab.friction.segments.find import find_segments, why_no_segment
+    from tribolab.friction.segments.find import find_segments
+    from tribolab.friction.segments.no_segment import why_no_segment
     from tribolab.reading.runs.read_run import read_run
 
     run = read_run(file, dialect, pair=False)

@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.decisions.decision import Decision
-from tribolab.friction.segments.find import measured
+from tribolab.friction.segments.measured import measured
 from tribolab.friction.segments.stretches import Stretch
 
 LEFT = "outside the bounds that a person set"

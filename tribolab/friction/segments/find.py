@@ -6,36 +6,27 @@ import numpy as np
 import xarray as xr
 
 from tribolab.arrays.broadcasting import of_runs, over_dims, stated_value
-from tribolab.arrays.chunks import one_by_one
-from tribolab.arrays.medians import median
 from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import AnalysisError, UnitError, shown
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.loaded import loaded
 from tribolab.friction.segments.locate import ConstancyLimits
-from tribolab.friction.segments.slopes import line
+from tribolab.friction.segments.measured import measured
+from tribolab.friction.segments.no_segment import add_needed_rate
 from tribolab.friction.segments.specimens import apart
 from tribolab.friction.segments.standstill import without_standstills
 from tribolab.friction.segments.stretches import (
     Stretch,
-    finite,
     from_position,
     from_set_speed,
     from_steps,
     from_velocity,
     name_of,
     of_points,
-    track,
     velocity_source,
 )
-from tribolab.friction.segments.strokes import find_strokes, middle_parts, shuttles
+from tribolab.friction.segments.strokes import middle_parts, shuttles
 from tribolab.units.conversion import to_si
-from tribolab.units.stamping import stamp
-
-# a sine covers the middle half of its way in a third of the time
-_SAMPLES_OF_STROKE = 3 * limits.MIN_SAMPLES_OF_MIDDLE.value
-_STROKE_DEGREE = 5  # degree of the polynomial through the positions of a stroke
-_LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
 
 
 @of_runs
@@ -182,7 +173,7 @@ def find_segments(
     if rows_are == "either":
         return _use_points(run, source)
     if "stroke_m" not in run.attrs and not shuttles(run):
-        return _with_sparse_strokes(run, plateaus)
+        return add_needed_rate(run, plateaus)
     try:  # a crank-driven slider has no constant speed: use the middles of its strokes
         middles = _use_strokes(
             run,
@@ -192,25 +183,7 @@ def find_segments(
         )
     except AnalysisError:  # not reciprocating: the reason why no plateau was found is more useful
         return plateaus
-    return _with_sparse_strokes(run, middles)
-
-
-def _with_sparse_strokes(run: xr.Dataset, segments: xr.Dataset) -> xr.Dataset:
-    """State the samples of a stroke, and the rate it needs, if they are too few for a segment."""
-    if segments.sizes["segment"] or not {"position", "sliding_velocity"} & set(run.data_vars):
-        return segments
-    try:
-        first = find_strokes(run).first
-    except AnalysisError:  # no strokes
-        return segments
-    samples, lasts = (
-        float(median(np.diff(first))),
-        float(median(np.diff(run["time"].values[first]))),
-    )
-    if samples >= _SAMPLES_OF_STROKE:
-        return segments
-    rate = _SAMPLES_OF_STROKE / lasts
-    return segments.assign_attrs(samples_of_stroke=samples, needed_rate_Hz=rate)
+    return add_needed_rate(run, middles)
 
 
 def _plateau_share(run: xr.Dataset, plateaus: xr.Dataset) -> float:
@@ -223,61 +196,6 @@ def _plateau_share(run: xr.Dataset, plateaus: xr.Dataset) -> float:
 def _use_points(run: xr.Dataset, source: str) -> xr.Dataset:
     """Return each row as a segment: a result at one speed, of unknown duration."""
     return measured(run, of_points(run), source, 0.0, None).assign_attrs(rows_are="points")
-
-
-def why_no_segment(segments: xr.Dataset) -> str:
-    """Return the reason why a run has no segment, as a sentence; else "".
-
-    Parameters
-    ----------
-    segments
-        From `find_segments`.
-
-    Examples
-    --------
-    >>> import numpy as np, xarray as xr
-    >>> v = 1e-3 * np.arange(500.0)
-    >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
-    >>> why_no_segment(find_segments(run))
-    'no segment: the run never slides at constant speed (ramp 100 % of the time)'
-    """
-    if segments.sizes["segment"]:
-        return ""
-    if (samples := segments.attrs.get("samples_of_stroke")) is not None:
-        return (
-            f"no segment: a stroke has {samples:g} samples, and its middle half needs "
-            f"{_SAMPLES_OF_STROKE}; record at {segments.attrs['needed_rate_Hz']:.3g} Hz or more"
-        )
-    lasted = _omitted_times(segments)
-    whole = sum(lasted.values())
-    shares = [
-        f"{why} {lasted[why] / whole:.0%}".replace("%", " %")
-        for why in sorted(lasted, key=lambda why: -lasted[why])
-        if whole > 0 and lasted[why] >= 0.005 * whole
-    ]
-    detail = f" ({', '.join(shares)} of the time)" if shares else ""
-    return f"no segment: the run never slides at constant speed{detail}"
-
-
-def consists_of_ramps(segments: xr.Dataset) -> bool:
-    """Return whether the speed of a run rises or falls for most of it, so that it has no segment.
-
-    Parameters
-    ----------
-    segments
-        From `find_segments`.
-    """
-    if segments.sizes["segment"]:
-        return False
-    lasted = _omitted_times(segments)
-    return lasted.get("ramp", 0.0) > limits.RAMP_SHARE.value * sum(lasted.values())
-
-
-def _omitted_times(segments: xr.Dataset) -> dict[str, float]:
-    """Return the time omitted for each reason [s]."""
-    lasted = segments["omitted_stop"].values - segments["omitted_start"].values
-    reason = segments["omitted_reason"].values.astype(str)
-    return {why: float(lasted[reason == why].sum()) for why in dict.fromkeys(reason)}
 
 
 def _mark_ramp(run: xr.Dataset, stretch: Stretch) -> Stretch:
@@ -325,158 +243,3 @@ def _use_strokes(run: xr.Dataset, source: str, share: float, min_samples: int) -
     stretches += [Stretch(float(a), float(b), why, np.nan) for a, b, why in ends if b > a]
     result = measured(run, stretches, source, 0.0, None, (begin[good], end[good]))
     return result.assign_attrs(stroke_middle=share)
-
-
-def measured(
-    run: xr.Dataset,
-    stretches: list[Stretch],
-    source: str,
-    trim: float,
-    position_range: tuple[str | float, str | float] | None,
-    trimmed: tuple[np.ndarray, np.ndarray] | None = None,
-) -> xr.Dataset:
-    """Return the intervals of a run as from `find_segments`: trimmed, with speed and distance.
-
-    Parameters
-    ----------
-    run
-        The run.
-    stretches
-        Intervals of kind "constant" become segments, the others are omitted.
-    source
-        Source of the speed, as in the attribute ``velocity_source``.
-    trim, position_range
-        As for `find_segments`.
-    trimmed
-        First and last time of the used part of each segment, instead of `trim`.
-    """
-    kept = [s for s in stretches if s.kind == "constant"]
-    left = [s for s in stretches if s.kind != "constant"]
-    time = run["time"].values
-    start, stop = (np.array([getattr(s, k) for s in kept], float) for k in ("start", "stop"))
-    velocity = np.array([s.velocity for s in kept], float)
-    trimmed_start = start + trim * (stop - start)
-    trimmed_stop = stop - trim * (stop - start)
-    if trimmed is not None:
-        trimmed_start, trimmed_stop = trimmed
-    settings = {"trim": trim, "velocity_source": source}
-    if position_range is not None:
-        low, high = sorted(to_si(x, "m", name="position_range") for x in position_range)
-        trimmed_start, trimmed_stop = _within(run, trimmed_start, trimmed_stop, low, high)
-        settings |= {"position_low_m": low, "position_high_m": high}
-    first = np.searchsorted(time, trimmed_start, side="left")
-    last = np.searchsorted(time, trimmed_stop, side="right")
-    if source == "recorded":
-        velocity = _mean_velocity(run, first, last, velocity)
-    elif source == "position":
-        degree = 1 if trimmed is None else _STROKE_DEGREE
-        velocity = _mean_slope(run, trimmed_start, trimmed_stop, velocity, degree)
-    direction = np.where(np.isnan(velocity) & (source == "recorded"), 0, np.sign(velocity))
-    if source in ("step", "set speed"):
-        direction = np.where(np.signbit(velocity), -1, 1)
-    speed = np.abs(velocity)
-    data = {
-        "start": start,
-        "stop": stop,
-        "trimmed_start": trimmed_start,
-        "trimmed_stop": trimmed_stop,
-        "sliding_speed": speed,
-        "direction": direction.astype(np.int8),
-        "sliding_distance": speed * (trimmed_stop - trimmed_start),
-        "samples": last - first,
-    }
-    for label in _LABELS:
-        if label in run:
-            data[label] = _label(np.asarray(run[label].values, float), first, last)
-    omitted = {
-        "omitted_start": np.array([s.start for s in left], float),
-        "omitted_stop": np.array([s.stop for s in left], float),
-        "omitted_reason": np.array([s.kind for s in left], dtype=object),
-    }
-    result = xr.Dataset(
-        {name: ("segment", values) for name, values in data.items()}
-        | {name: ("omitted", values) for name, values in omitted.items()},
-        coords={"segment": np.arange(len(kept))},
-    )
-    return stamp(result, **(run.attrs | settings))
-
-
-def _within(
-    run: xr.Dataset,
-    start: np.ndarray,
-    stop: np.ndarray,
-    low: float,
-    high: float,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return start and end of each segment narrowed to the part between two positions."""
-    if "position" not in run:
-        raise AnalysisError(
-            f"{name_of(run)}: position_range is given, but the run has no 'position'"
-        )
-    time, position = finite(run, "position")
-    start, stop = start.copy(), stop.copy()
-    for i in one_by_one(range(start.size)):
-        first, last = np.searchsorted(time, [start[i], stop[i]])
-        part = position[first:last]
-        inside = first + np.flatnonzero((part >= low) & (part <= high))
-        if inside.size == 0:
-            stop[i] = start[i]
-            continue
-        start[i], stop[i] = time[inside[0]], time[inside[-1]]
-    return start, stop
-
-
-def _mean_velocity(
-    run: xr.Dataset, first: np.ndarray, last: np.ndarray, guess: np.ndarray
-) -> np.ndarray:
-    """Return the mean recorded velocity over each trimmed segment, without outliers."""
-    velocity = run["sliding_velocity"].values
-    result = guess.copy()
-    for i in one_by_one(range(first.size)):
-        part = velocity[first[i] : last[i]]
-        size = max(1, part.size // 4096)
-        part = part[: part.size // size * size].reshape(-1, size).mean(axis=1)
-        part = part[np.isfinite(part)]
-        if part.size == 0:
-            continue
-        rest = np.abs(part - median(part))
-        # the median deviation of quantised readings may be zero: use their mean deviation
-        keep = rest <= 6 * max(median(rest) / 0.6745, np.mean(rest))
-        result[i] = part[keep].mean()
-    return result
-
-
-def _mean_slope(
-    run: xr.Dataset, start: np.ndarray, stop: np.ndarray, guess: np.ndarray, degree: int
-) -> np.ndarray:
-    """Return the mean slope of the position over each trimmed segment, from an odd polynomial.
-
-    A line is insufficient for a stroke whose speed is not constant: over a whole stroke of a sine
-    it is 22 % steeper than distance over time.
-    """
-    time, position = track(run)
-    first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
-    result = guess.copy()
-    for i in one_by_one(range(first.size)):
-        part = time[first[i] : last[i]]
-        if part.size < 3:
-            continue
-        if degree == 1 or part.size < 3 * degree:
-            result[i] = line(part, position[first[i] : last[i]])[1]
-            continue
-        span = part[-1] - part[0]
-        place = 2 * (part - part[0]) / span - 1
-        terms = np.polynomial.legendre.legfit(place, position[first[i] : last[i]], degree)
-        result[i] = 2 * terms[1::2].sum() / span  # the even terms are equal at both ends
-    return result
-
-
-def _label(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Return the median of the run's label over each segment, NaN if none."""
-    result = np.full(first.size, np.nan)
-    for i in one_by_one(range(first.size)):
-        part = values[first[i] : last[i]]
-        part = part[np.isfinite(part)]
-        if part.size:
-            result[i] = median(part)
-    return result

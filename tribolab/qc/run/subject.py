@@ -19,7 +19,8 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.oscillation.spectrum.lines import Line, segment_lines
 from tribolab.friction.oscillation.spectrum.noise import noise_level
-from tribolab.friction.segments.find import consists_of_ramps, find_segments, why_no_segment
+from tribolab.friction.segments.find import find_segments
+from tribolab.friction.segments.no_segment import consists_of_ramps, why_no_segment
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
 

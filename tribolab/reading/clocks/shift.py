@@ -17,8 +17,6 @@ if methods contradict each other, none is precise, or repeated motion fits equal
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,6 +24,16 @@ from tribolab.arrays.medians import median
 from tribolab.arrays.threads import one_thread
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
+from tribolab.reading.clocks.agreement import (
+    Estimate,
+    ShiftEstimate,
+    combine,
+    confirmed,
+    consistent,
+    contradicted,
+    starts_agree,
+    widened,
+)
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.candidate_shifts import Candidate, candidates, likeliest
 from tribolab.reading.clocks.classes import Classes, coarse_shift, motion_classes
@@ -34,37 +42,12 @@ from tribolab.reading.clocks.motion import Motion, clean_motion
 from tribolab.reading.clocks.onset import refine_by_onsets
 from tribolab.reading.clocks.starts import (
     Logs,
-    StartShift,
     changes,
     shift_from_starts,
 )
 
 # N, m/s: larger values are damaged, and their squares would overflow
 _MAX_POSSIBLE_VALUE = 1e12
-
-
-class Estimate(NamedTuple):
-    """Result of one method: shift in the middle of the motion log [s], standard deviation [s]."""
-
-    shift: float
-    uncertainty: float
-
-
-class ShiftEstimate(NamedTuple):
-    """Estimate: motion clock + shift = force clock [s] in the middle of the motion log.
-
-    Away from the middle, `rate` times the time since then on the motion clock is added. `explained`
-    is the share of the force's variance explained by velocity classes, `ways` the result of each
-    method, and `refused` the reason why the shift is unreliable ("" if it is not).
-    """
-
-    shift: float
-    uncertainty: float
-    explained: float
-    rate: float = 0.0
-    rate_uncertainty: float = limits.CLOCK_RATE_ERROR.value
-    ways: dict[str, Estimate] = {}  # noqa: RUF012 - never changed
-    refused: str = ""
 
 
 def estimate_clock_shift(
@@ -185,7 +168,7 @@ def _estimated(
         estimate = starts if seen is not None and vaguer else onsets
     # slack or sticking would delay slow starts more, which only the first method uses
     twice = wide and not weak and seen is not None and onsets is not starts
-    twice = twice and _starts_agree(starts, onsets, basis.stroke)
+    twice = twice and starts_agree(starts, onsets, basis.stroke)
     if vague and not twice:
         return None
     # starts with a large error were searched at a wrong position
@@ -216,7 +199,7 @@ def _estimated(
     sharp_fit = (
         joint is not None and joint.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
     )
-    if sharp_fit and seen is not None and not agree and _agree(seen, ways["motion"]):
+    if sharp_fit and seen is not None and not agree and consistent(seen, ways["motion"]):
         estimate, ways["starts"] = (
             starts,
             Estimate(*starts[:2]),
@@ -224,16 +207,16 @@ def _estimated(
     known = (
         "starts" in ways and estimate.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
     )
-    if twice and _contradicted(ways, stroke):
+    if twice and contradicted(ways, stroke):
         other = onsets if estimate is starts else starts
         combined, part = (
-            _widened(ways["starts"], Estimate(*other[:2])),
+            widened(ways["starts"], Estimate(*other[:2])),
             limits.MIN_ERROR_OF_SHIFT.value,
         )
-    elif wide and known and "motion" in ways and _agree(ways["starts"], ways["motion"]):
+    elif wide and known and "motion" in ways and consistent(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], limits.MIN_ERROR_OF_SHIFT.value
         if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
-            combined = _widened(combined, ways["motion"])
+            combined = widened(combined, ways["motion"])
     elif sharp_fit:
         first = ways["classes"]
         if known:
@@ -241,10 +224,10 @@ def _estimated(
                 ways["motion"].uncertainty
                 > limits.MAX_ERROR_OF_CONFIRMATION.value * ways["starts"].uncertainty
             )
-            first = _widened(ways["starts"], ways["classes"]) if vague else ways["starts"]
-        combined, part = _combined(first, ways["motion"]), limits.ERROR_WITHOUT_FIT.value
-    elif "starts" in ways and _confirmed(ways["starts"], ways["classes"], stroke):
-        combined, part = _widened(ways["starts"], ways["classes"]), limits.ERROR_WITHOUT_FIT.value
+            first = widened(ways["starts"], ways["classes"]) if vague else ways["starts"]
+        combined, part = combine(first, ways["motion"]), limits.ERROR_WITHOUT_FIT.value
+    elif "starts" in ways and confirmed(ways["starts"], ways["classes"], stroke):
+        combined, part = widened(ways["starts"], ways["classes"]), limits.ERROR_WITHOUT_FIT.value
     else:
         return estimate._replace(ways=ways, refused="no two ways tell it")
     error = float(np.hypot(combined.uncertainty, part * stroke))
@@ -280,52 +263,6 @@ def _has_different_speeds(motion: Motion, way: NDArray[np.int64]) -> bool:
     return bool(fastest.max() > limits.MAX_SPEED_RATIO.value * fastest.min())
 
 
-def _starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
-    """Whether starts at all speeds and those of fast strokes of a duration [s] agree."""
-    sharp = (
-        max(starts.uncertainty, onsets.uncertainty) < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
-    )
-    apart = abs(starts.shift - onsets.shift)
-    return sharp and apart < max(
-        limits.MAX_ERRORS_OF_AGREEMENT.value * starts.uncertainty,
-        limits.MAX_DELAY_OF_CLASSES.value * stroke,
-    )
-
-
-def _contradicted(ways: dict[str, Estimate], stroke: float) -> bool:
-    """Whether starts, confirmed by two methods, exclude the fit by the motion (stroke [s])."""
-    starts, motion = ways["starts"], ways.get("motion")
-    if motion is None or motion.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
-        return True
-    return abs(
-        motion.shift - starts.shift
-    ) > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke and not _agree(starts, motion)
-
-
-def _agree(first: Estimate | StartShift, second: Estimate) -> bool:
-    """Whether two results agree within their errors."""
-    error = np.hypot(first.uncertainty, second.uncertainty)
-    return bool(abs(first.shift - second.shift) <= limits.MAX_ERRORS_OF_AGREEMENT.value * error)
-
-
-def _confirmed(starts: Estimate, classes: Estimate, stroke: float) -> bool:
-    """Whether velocity classes confirm the result of the starts, for a stroke duration [s]."""
-    return (
-        _agree(starts, classes)
-        or abs(starts.shift - classes.shift) < limits.MAX_DELAY_OF_CLASSES.value * stroke
-    )
-
-
-def _widened(starts: Estimate, other: Estimate) -> Estimate:
-    """Increase the uncertainty of starts by half the difference from another method.
-
-    If friction follows the speed slowly, velocity classes are late, and starts may be; if the stage
-    sticks, a fit may be closer to the truth.
-    """
-    apart = 0.5 * (starts.shift - other.shift)
-    return starts._replace(uncertainty=float(np.hypot(starts.uncertainty, apart)))
-
-
 def _refined(fit: Classes, shift: float, around: float) -> float:
     """Return the shift near a coarse one at which the classes explain most."""
     while around > 0.2 * fit.period:
@@ -333,18 +270,6 @@ def _refined(fit: Classes, shift: float, around: float) -> float:
         shift = float(shifts[np.argmax([fit.explained(s) for s in shifts])])
         around /= 8.0
     return shift
-
-
-def _combined(first: Estimate, second: Estimate) -> Estimate:
-    """Return the mean of two results; its standard deviation includes their difference."""
-    apart = second.shift - first.shift
-    weights = np.array([1.0 / (each.uncertainty**2 + apart**2) for each in (first, second)])
-    share = float(weights[1] / weights.sum())
-    inner = (1.0 - share) * first.uncertainty + share * second.uncertainty
-    error = np.sqrt(
-        inner**2 + max(share * (1.0 - share), limits.MIN_SHARE_OF_DIFFERENCE.value) * apart**2
-    )
-    return Estimate(first.shift + share * apart, limits.ERROR_OF_METHODS.value * float(error))
 
 
 def _doubt(

@@ -15,7 +15,7 @@ from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.critical_stiffness import STIFFNESS
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_LOOKED_AT
-from tribolab.friction.segments.find import why_no_segment
+from tribolab.friction.segments.no_segment import why_no_segment
 from tribolab.records.parts import Notice
 from tribolab.records.runs.decision_rows import decision_notices
 from tribolab.records.runs.notice_words import (
