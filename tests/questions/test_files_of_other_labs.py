@@ -170,3 +170,14 @@ def test_no_option_is_offered_if_more_than_options_is_missing(names, asked, tmp_
     said = info(write(tmp_path / "log.csv", names + "\n", columns))
     assert asked in said and "Missing: the load\n" in said
     assert "State --" not in said and "(a force)" not in said
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.3])
+def test_a_negative_force_next_to_its_own_positive_coefficient_is_turned(ratio, tmp_path):
+    """An Rtec's log, whose reader plots -Fx; a coefficient of other forces proves nothing."""
+    load, mu = -level(20, 1), level(0.12, 2)
+    columns = [0.1 * np.arange(ROWS), load, mu, ratio * mu * load, level(100, 3)]
+    head = "Timestamp,DAQ.Fz (N),DAQ.COF (),DAQ.Fx (N),Rotary.Velocity (rpm)\n"
+    run = draft_dialect(write(tmp_path / "LOG.csv", head, columns))
+    (force,) = (c for c in run.understood.columns if c.quantity == "friction_force")
+    assert force.sign == (-1 if ratio == 1 else 1)

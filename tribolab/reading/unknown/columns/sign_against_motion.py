@@ -12,6 +12,7 @@ _MOVES, _RESTS = 0.05, 0.005  # of the highest speed
 _FREE = 0.1  # of the highest load, below which nothing presses
 _MIN_ROWS = 20  # rows
 _NEARLY_ALL = 0.95  # of the rows that move
+_ALIKE = 0.05  # of 1: a recorded coefficient over the ratio of the forces
 _CLEAR = 3.0  # times the scatter
 _SPEEDS = ("sliding_velocity", "rotation_speed")
 _PARTS = 2000  # stretches over which a position tells a speed: from row to row it is noise
@@ -30,6 +31,8 @@ def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[
     if len(force) != 1 or force[0].sign != 1:
         return list(columns)
     load = next((c for c in columns if c.used and c.quantity == "normal_force"), None)
+    if load is not None and _is_negative_by_coefficient(columns, numbers, force[0], load):
+        return _turned(columns, force[0])
     pressed = np.abs(numbers[:, load.place - 1]) if load is not None else np.ones(len(numbers))
     read = np.column_stack([numbers[:, force[0].place - 1], pressed])
     velocity, (signal, pressed) = _moving(columns, numbers, read.T)
@@ -49,8 +52,35 @@ def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[
     against = min((shown < 0).mean(), (along < 0).mean()) > _NEARLY_ALL
     if not against or not -np.median(along) > max(_CLEAR * _scatter(signal[rests]), abs(zero)):
         return list(columns)
-    turned = force[0]._replace(sign=-1, note=force[0].note or COUNTED_SO)
-    return [turned if column is force[0] else column for column in columns]
+    return _turned(columns, force[0])
+
+
+def _turned(columns: Sequence[DraftColumn], force: DraftColumn) -> list[DraftColumn]:
+    turned = force._replace(sign=-1, note=force.note or COUNTED_SO)
+    return [turned if column is force else column for column in columns]
+
+
+def _is_negative_by_coefficient(
+    columns: Sequence[DraftColumn], numbers: np.ndarray, force: DraftColumn, load: DraftColumn
+) -> bool:
+    """Whether friction is negative where its recorded ratio to the load is positive.
+
+    The instrument's coefficient says what its friction is, whatever the offset of the sensor.
+    File: Rtec MFT, "DAQ.COF ()" 0.12, "DAQ.Fx (N)" -2.4, "DAQ.Fz (N)" -20; its program plots -Fx.
+    """
+    own = [c for c in columns if c.used and c.quantity == "friction_coefficient"]
+    if len(own) != 1 or force.read_unit != load.read_unit or own[0].read_unit not in (None, "1"):
+        return False
+    velocity, (friction, pressed, ratio) = _moving(
+        columns, numbers, numbers[:, [c.place - 1 for c in (force, load, own[0])]].T
+    )
+    moves = np.isfinite(velocity) & (velocity != 0) & np.isfinite(friction) & (ratio > 0)
+    moves &= np.abs(pressed) > _FREE * np.nanmax(np.abs(pressed), initial=0.0)
+    if np.count_nonzero(moves) < max(_MIN_ROWS, _NEARLY_ALL * len(velocity)):
+        return False
+    found = np.abs(friction[moves] / pressed[moves]) / ratio[moves]
+    along = np.sign(velocity[moves]) * friction[moves]
+    return bool((along < 0).mean() > _NEARLY_ALL and abs(np.median(found) - 1) < _ALIKE)
 
 
 def _moving(
