@@ -13,9 +13,10 @@ import pytest
 import xarray as xr
 
 import tribolab
-from tribolab.app.terminal import outcome_lines, truth_lines
+from tribolab.app.terminal import outcome_lines
 from tribolab.app.truth.friction import TruthComparison
 from tribolab.app.truth.known import DemoComparison
+from tribolab.app.truth.lines import truth_lines
 from tribolab.app.truth.shear_stress import compare_shear_stress
 from tribolab.campaign.models.analysis import model_and_points
 from tribolab.campaign.pipeline import process

@@ -51,7 +51,7 @@ def demo(
 
         with progress_bars(quiet) as progress:
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
-        from tribolab.app.terminal import truth_lines  # after the workers have started
+        from tribolab.app.truth.lines import truth_lines  # after the workers have started
 
         code = show_outcome(outcome, debug)
         for line in truth_lines(compared, outcome):
@@ -79,7 +79,7 @@ def reproduce(
     """
     with reported(debug):
         # imported late for a quick start
-        from tribolab.app.terminal import paper_lines
+        from tribolab.app.truth.lines import paper_lines
         from tribolab.paper.reproduce import reproduce as reproduce_paper
 
         with progress_bars(quiet) as progress:

@@ -8,17 +8,23 @@ from typing import Protocol
 
 import numpy as np
 
+from tribolab.app.questions.amounts import (
+    answered_amount,
+    candidate_amount,
+    confirm_line,
+    set_amount,
+    set_strokes,
+    states_amount,
+)
 from tribolab.app.questions.typed import (
     NUMBER,
     amount_typed,
     as_amount,
     as_strokes,
     turning,
-    turns_alone,
 )
-from tribolab.core.errors import ReadError, TribolabError, shown
+from tribolab.core.errors import TribolabError, shown
 from tribolab.reading.dialect.zero_reading import parse_zero
-from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts, is_unit
 from tribolab.reading.scans.extent import likely_height_unit
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
@@ -30,7 +36,7 @@ from tribolab.reading.unknown.derivations.candidate_lines import (
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.missing_inputs import lacking
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.reading.unknown.model import Agreed, DraftColumn, Reason, Understood, other_units
+from tribolab.reading.unknown.model import DraftColumn, Reason, Understood, other_units
 from tribolab.reading.unknown.proposal.answers import column_of, corrected, fits
 from tribolab.reading.unknown.proposal.calibration_factor import (
     ANGLE,
@@ -249,10 +255,10 @@ def _ask_for(
     found = _column_of_any(draft, names)
     if found is not None and found.quantity in names and not (found.guessed or found.fill_in):
         return draft  # nothing is open
-    earlier = _answered_amount(draft, amount)
-    if found is None and not earlier and _states_amount(draft, amount):
+    earlier = answered_amount(draft, amount)
+    if found is None and not earlier and states_amount(draft, amount):
         return draft
-    lines, value = ("", None) if found or earlier else _candidate_amount(draft, amount)
+    lines, value = ("", None) if found or earlier else candidate_amount(draft, amount)
     likely = amount_of(value)
     if lines:
         question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
@@ -264,15 +270,15 @@ def _ask_for(
         if typed == _NONE:
             return draft if found is None else _remove_quantities(draft, names)
         if value is not None and typed.lower() in (*_YES, likely):
-            return _confirm_line(_remove_quantities(draft, names), amount, value)
+            return confirm_line(_remove_quantities(draft, names), amount, value)
         try:
             if amount == "load" and _SUM.match(typed):
                 return _add_sum(_remove_quantities(draft, names), typed, ask)
             strokes = as_strokes(typed) if amount == "speed" and not turning(typed) else None
             if strokes:
-                return _with_strokes(_remove_quantities(draft, names), strokes)
+                return set_strokes(_remove_quantities(draft, names), strokes)
             if amount and (text := as_amount(typed, amount)):
-                return _with_amount(_remove_quantities(draft, names), amount, text)
+                return set_amount(_remove_quantities(draft, names), amount, text)
             column = _column(draft, typed)
             if found and column.place == found.place and not found.guessed and not found.fill_in:
                 return draft
@@ -308,20 +314,6 @@ def _remove_quantities(draft: Draft, names: Sequence[str], but: str = "") -> Dra
     return draft
 
 
-def _with_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
-    layout, understood = draft.layout, draft.understood
-    if layout is None or understood is None:
-        return draft
-    draft = draft.with_understood(understood._replace(strokes=strokes))
-    speed = what_follows(layout, understood._replace(strokes=strokes)).speed
-    if speed is None or speed.source != "stroke":
-        if not strokes[0] and turns_alone(strokes[1]):
-            raise ReadError(f"turns need the radius of their track: {strokes[1]} at 20 mm radius")
-        lacking_one = "frequency, such as 2 Hz" if strokes[0] else "length, such as 8 mm"
-        raise ReadError(f"strokes need a {lacking_one}, too")
-    return draft
-
-
 def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
     """Return a draft in which several columns add up to the load, e.g. 4 + 5."""
     layout, understood = draft.layout, draft.understood
@@ -346,62 +338,6 @@ def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
         for c in understood.columns
     ]
     return draft.with_understood(understood._replace(kind="run", columns=tuple(columns)))
-
-
-def _answered_amount(draft: Draft, amount: str) -> str:
-    understood = draft.understood
-    if understood is None:
-        return ""
-    return {"load": understood.load, "speed": understood.speed, "rate": understood.rate}.get(
-        amount, ""
-    )
-
-
-def _states_amount(draft: Draft, amount: str) -> bool:
-    """Whether the file states the load as one number, with certainty."""
-    layout, understood = draft.layout, draft.understood
-    if amount != "load" or layout is None or understood is None or understood.load:
-        return False
-    follows = what_follows(layout, understood)
-    formulas = {each.formula for each in follows.formulas if each.quantity == "normal_force"}
-    loads = [value for value in follows.values if {value.name} == formulas]
-    return bool(loads) and not loads[0].guess
-
-
-def _confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
-    """Return a draft in which a line of the file states the load or speed, as confirmed."""
-    layout, understood = draft.layout, draft.understood
-    if layout is None or understood is None:
-        return draft
-    what: Agreed = "load" if amount == "load" else "speed"
-    understood = understood._replace(agreed=(*understood.agreed, (what, value.text)))
-    return draft.with_understood(understood)
-
-
-def _candidate_amount(draft: Draft, amount: str) -> tuple[str, Amount | None]:
-    """Return the lines of the file that may state an amount, and that amount."""
-    layout, understood = draft.layout, draft.understood
-    lack = {"load": "normal_force", "speed": "sliding_velocity"}.get(amount, "")
-    if layout is None or understood is None or not lack:
-        return "", None
-    follows = what_follows(layout, understood)
-    missing = any(lacked.member == lack for lacked in lacking(understood, follows))
-    if not missing:
-        return "", None
-    return candidate_lines(layout, follows, lack), likely_value(layout, follows, lack)
-
-
-def _with_amount(draft: Draft, amount: str, text: str) -> Draft:
-    layout, understood = draft.layout, draft.understood
-    if layout is None or understood is None:
-        return draft
-    if amount == "load":
-        understood = understood._replace(load=text)
-    elif amount == "speed":
-        understood = understood._replace(speed=text)
-    else:
-        understood = understood._replace(rate=text)
-    return draft.with_understood(understood)
 
 
 def _column(draft: Draft, typed: str) -> DraftColumn:
