@@ -255,10 +255,7 @@ def _finite_mean(values: np.ndarray) -> float:
 
 
 def _tilt(offset: np.ndarray, load: np.ndarray) -> float:
-    """Return the angle between force cell and load axis, from the increase of the offset with load.
-
-    NaN with only one load: zero and tilt cannot be separated then.
-    """
+    """Return the angle of the force cell, from offset over load; NaN with only one load."""
     known = np.isfinite(offset) & np.isfinite(load)
     if known.sum() < 3 or np.ptp(load[known]) < 0.2 * np.abs(load[known]).max():
         return float("nan")

@@ -280,11 +280,7 @@ def _shift_state(
 
 
 def _extrapolation(at: list[float], aim: float) -> list[float]:
-    """Return the weights of the last points that extrapolate to a target.
-
-    Parabola for similar steps, else secant over at most three of its steps; only the last value if
-    two points differ by rounding.
-    """
+    """Return weights of the last points: parabola for similar steps, else secant or last value."""
     if len(at) < 2 or at[-1] == at[-2]:
         return [1.0]
     step, ahead = at[-1] - at[-2], aim - at[-1]

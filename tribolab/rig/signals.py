@@ -190,10 +190,7 @@ def _ripple(
     fine: np.ndarray,
     rng: np.random.Generator,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return stick-slip of zero mean at constant speed, plus fluctuation with a random mean.
-
-    The mean of the fluctuation is kept, because error bars estimated from the trace include it.
-    """
+    """Return stick-slip of zero mean at constant speed, plus fluctuation with a random mean."""
     noise = slow_noise(rng, length, scatter.fluctuation_length * length)
     wave = WAVES[form](rng, length, wavelength, drop) if form != "none" else None
 

@@ -228,10 +228,7 @@ def _frequency_validity(
     speed: xr.DataArray,
     modulus: TabulatedModulus,
 ) -> dict[str, str]:
-    """Return the validity of a result that depends on the modulus outside the measured frequencies.
-
-    An error only if no speed is within the second limit: the ends of a curve may be uncertain.
-    """
+    """Return the validity outside the measured frequencies; an error if no speed is near them."""
     share = np.zeros(np.atleast_1d(speed.values).size)
     for force, two in zip(forces, other, strict=True):
         largest = np.maximum(np.abs(force), np.abs(two))

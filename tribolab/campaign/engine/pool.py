@@ -208,10 +208,7 @@ class _Lane:
 
 @contextlib.contextmanager
 def _defer_signals() -> Iterator[None]:
-    """Defer signals until processes and threads are started, and Ctrl-C until it is ignored.
-
-    An interruption during the start of a process leaves one that dies with a traceback.
-    """
+    """Defer signals until processes and threads are started, so that none dies with a traceback."""
     if threading.current_thread() is not threading.main_thread():  # signals go to the main one
         yield
         return

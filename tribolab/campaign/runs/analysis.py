@@ -222,10 +222,7 @@ def _add_stated_load(signals: xr.Dataset) -> xr.Dataset:
 
 
 def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
-    """Return the attributes of a run whose speed is stated in the campaign file.
-
-    Segments use it if no speed was recorded; else the check of the speed compares with it.
-    """
+    """Return the attributes of a run of stated speed: used, or compared with the recorded one."""
     own = signals.attrs.get("set_speed_m_s", speed)
     if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):
         raise ConfigError(

@@ -210,11 +210,7 @@ def _refuse_foreign(output: Path) -> None:
 
 
 def _keep_foreign_files(ledger: Ledger, new: Path) -> None:
-    """Link foreign files into the new folder, and our changed files under other names.
-
-    If the catalogue is damaged, runs whose raw files cannot be read now are unknown: their data
-    files are kept, too.
-    """
+    """Link foreign files into the new folder, and our changed files under other names."""
     intact = ledger.intact()
     names = ledger.foreign(intact)
     if CATALOGUE in ledger.files and CATALOGUE not in intact:

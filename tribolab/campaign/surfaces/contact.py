@@ -199,10 +199,7 @@ def _adhesion(
     psd: xr.Dataset,
     modulus: float,
 ) -> tuple[xr.Dataset, xr.Dataset]:
-    """Solve adhesion in each medium at the pressures of the grid, of the loads, and at zero.
-
-    Zero pressure is the limit of vanishing load, where gamma_eff(1) indicates a pull-off force.
-    """
+    """Solve adhesion in each medium at the pressures of the grid, of the loads, and near zero."""
     at_loads = np.array([]) if loads is None else loads.pressure.values
     pressures = np.concatenate([[0.0], at_loads, grid])
     # a band is smooth, so a third of the grid is enough

@@ -153,11 +153,7 @@ class _Peak(NamedTuple):
 def _starts(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, reach: float | None
 ) -> list[_Start]:
-    """Return the starts of segments after a rest, or at the beginning of a record or specimen.
-
-    The latter only if they begin without friction, while the machine takes up the slack of a
-    string.
-    """
+    """Return the starts of segments after a rest, or at the unloaded beginning of a record."""
     time = run.variables["time"].values
     resting = segments.variables["omitted_reason"].values == "at rest"
     begin, end = (segments.variables[f"omitted_{k}"].values[resting] for k in ("start", "stop"))

@@ -163,10 +163,7 @@ def _best_view(record: EvenRecord, surveyed: Survey, noise: float, thresholds: E
 def _without_slow_wave(
     record: EvenRecord, surveyed: Survey, view: View, noise: float, thresholds: EventLimits
 ) -> tuple[EvenRecord, Survey, View]:
-    """Remove a slow wave if a larger regular oscillation remains.
-
-    A removed wave of few periods leaves its harmonics, which are smaller.
-    """
+    """Remove a slow wave if a larger regular oscillation remains."""
     rest = without_slow_wave(record)
     found = survey(rest[0]) if rest else None
     if rest is None or found is None:

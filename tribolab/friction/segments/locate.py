@@ -172,10 +172,7 @@ def _merge_short(
 
 
 def _time_to_plateau(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
-    """Return the time [s] from a piece to the next plateau or rest on one side, without pauses.
-
-    A pause without samples does not show a ramp.
-    """
+    """Return the time [s] from a piece to the next plateau or rest on one side, without pauses."""
     at = index + way
     while 0 <= at < len(pieces) and pieces[at].kind not in _KEPT:
         at += way

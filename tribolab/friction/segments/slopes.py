@@ -78,10 +78,7 @@ def digit(position: np.ndarray) -> float:
 
 
 def _is_commanded(position: np.ndarray, step: float) -> bool:
-    """Return whether a position increases by equal steps or rests, as a set-point does.
-
-    Rounded readings repeat now and then during a motion, or increase by another number of digits.
-    """
+    """Return whether a position increases by equal steps or rests, as a set-point does."""
     moves = others = alone = 0
     for first, last in pieces(0, position.size - 1):
         steps = np.abs(np.diff(position[first : last + 1]))

@@ -252,10 +252,7 @@ def _unloaded(
 def _unloaded_parts(
     time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
-    """Return the longest constant, unloaded part of each interval, at any motion.
-
-    A load that rises in the same interval passes every level: only a constant level is used.
-    """
+    """Return the longest part of each interval with a constant load of zero, at any motion."""
     levels = []
     for level in _unloaded(time, normal, intervals, load):
         first, last = int(level[0]), int(level[-1]) + 1

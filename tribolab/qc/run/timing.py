@@ -214,10 +214,7 @@ def _fastest_interval(interval: np.ndarray, factor: float) -> float:
 
 
 def _uneven_interval(interval: np.ndarray, factor: float) -> float:
-    """Return the usual interval if equal periods have very different numbers of rows, else 0.
-
-    A slow rate has few rows and would be missed among equal numbers of rows.
-    """
+    """Return the usual interval if equal periods have very different numbers of rows, else 0."""
     cumulative = np.cumsum(interval)
     marks = np.linspace(0, cumulative[-1], _PARTS + 1)
     rows = np.diff(np.searchsorted(cumulative, marks))

@@ -96,10 +96,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
 
 
 def _spread(values: np.ndarray, middle: float) -> float:
-    """Return the robust standard deviation of differences; without the zeros if most are zero.
-
-    A gauge with coarse digits, or one read out too fast, repeats the same height for some points.
-    """
+    """Return the robust standard deviation of differences; without the zeros if most are zero."""
     away = np.abs(values[np.isfinite(values)] - middle)
     if not away.size:
         return 0.0

@@ -143,10 +143,7 @@ def _path(time: Array, velocity: Array) -> Array:
 
 
 def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64] | slice:
-    """Return the rows of a motion log to use: all near events, and a selection of the others.
-
-    A table of all rows would need a hundred times the memory of the log.
-    """
+    """Return the rows of a motion log to use: all near events, and a selection of the others."""
     if count <= _MAX_ROWS:
         return slice(None)
     near = _MAX_ROWS // (4 * max(len(events), 1))

@@ -110,10 +110,7 @@ def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: D
 def _add_ratio_of_stresses(
     columns: dict[str, np.ndarray], formulas: dict[str, str], attrs: Json
 ) -> None:
-    """Add the coefficient of friction of a run that has stresses instead of forces.
-
-    The sensor readings without contact are subtracted first, and noted.
-    """
+    """Add the friction coefficient of a run of stresses; their zeros are subtracted and noted."""
     slides = {"sliding_velocity", "position", "rotation_speed", "set_speed"} & set(columns)
     known = {"friction_force", "friction_coefficient"} & set(columns)
     if known or not slides or not {"shear_stress", "normal_stress"} <= set(columns):
@@ -133,10 +130,7 @@ def _add_ratio_of_stresses(
 
 
 def _without_contact(normal: np.ndarray) -> np.ndarray:
-    """Return a mask of samples without contact: one level far below the usual stress.
-
-    A sensor without load shows its zero; other small readings are ramps of the load.
-    """
+    """Return a mask of samples without contact: one level far below the usual stress."""
     usual = np.nanpercentile(np.abs(normal), 75)
     light = np.abs(normal) < _LIGHT * usual
     if np.count_nonzero(light) < _MIN_SAMPLES_OF_ZERO:
