@@ -215,14 +215,6 @@ def test_turns_and_a_radius_make_the_way(tmp_path):
     assert "position" not in tl.read(file)
 
 
-@pytest.mark.parametrize("name", ["Stage X", "x_axis", "Slider pos", "X stage"])
-def test_the_place_of_a_stage_is_the_position_where_nothing_turns(name, tmp_path):
-    file = tmp_path / "stage.csv"
-    rows = "\n".join(f"{n / 10},{5 + n % 3},30,{n / 40}" for n in range(100))
-    file.write_text(f"Time [s],Ft [N],Fn [N],{name} [mm]\n{rows}\n")
-    np.testing.assert_allclose(tl.read(file).position, 1e-3 * np.arange(100) / 40)
-
-
 def test_json_is_no_table_but_may_stand_above_one(tmp_path):
     file = tmp_path / "run.json"
     rows = "\n".join(f"{n / 10},{5 + n % 3},30,2" for n in range(100))

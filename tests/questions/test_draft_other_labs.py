@@ -159,8 +159,6 @@ def test_a_layout_that_lacks_something_and_says_too_little_itself_is_refused(tmp
         ("rpm_set", "set_speed", "rpm"),
         ("rpm", "rotation_speed", "rpm"),
         ("RPM (enc)", "rotation_speed", "rpm"),
-        ("tempC", "temperature", "C"),
-        ("forceN", "friction_force", "N"),
     ],
 )
 def test_names_that_are_or_end_in_their_unit_need_no_question(label, quantity, unit, tmp_path):

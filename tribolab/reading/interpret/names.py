@@ -29,15 +29,6 @@ _LATE = 0.2  # largest reduction for a symbol that is late in the list
 KNOWN_WORD = 0.7  # share of known words above which a name is certain
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
-_STAGE = re.compile(
-    r"(?P<device>(?:stage|axis|slider|carriage|motor|achse|schlitten|tisch|platine)s?)[\s_-]+"
-    r"(?P<name>x|pos(?:ition)?)",
-    re.IGNORECASE,
-)
-_OF_STAGE = re.compile(
-    r"(?P<name>x|pos(?:ition)?)[\s_-]*(?P<device>stage|axis|slider|carriage|motor|achse|schlitten|tisch|platine)",
-    re.IGNORECASE,
-)
 _ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)
 _INSTEAD = {"position": "height_displacement"}
 _ANGLES = ("deg", "rad", "°")
@@ -51,7 +42,6 @@ COUNTS = "counts"
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
 _CLOCKS |= {"usecs": "us", "mus": "us", "sec": "s", "secs": "s"}
 _RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
-_GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "tempC", "forceN"
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # row numbers, not rotation
 # a set speed is not the actual speed
 _AS_SET = {"sliding_velocity": "set_speed", "normal_force": "set_normal_force"}
@@ -75,13 +65,8 @@ def device_of(name: str) -> tuple[str, str]:
 
     >>> device_of("DAQ.Fz"), device_of("Coeff. of friction"), device_of("Fz")
     (('DAQ', 'Fz'), ('', 'Coeff. of friction'), ('', 'Fz'))
-    >>> device_of("Stage X"), device_of("x_axis")
-    (('Stage', 'X'), ('axis', 'x'))
     """
-    parts = None
-    if len(name) <= _MAX_NAME:
-        plain = name.strip()
-        parts = _DEVICE.match(plain) or _STAGE.fullmatch(plain) or _OF_STAGE.fullmatch(plain)
+    parts = _DEVICE.match(name.strip()) if len(name) <= _MAX_NAME else None
     return (parts["device"], parts["name"]) if parts else ("", name)
 
 
@@ -133,8 +118,8 @@ def split_unit(label: str) -> tuple[str, str | None]:
     ('Zeit', 's')
     >>> split_unit("angle_deg")
     ('angle', 'deg')
-    >>> split_unit("rpm_set"), split_unit("tempC"), split_unit("Basic")
-    (('rpm_set', 'rpm'), ('temp', 'C'), ('Basic', None))
+    >>> split_unit("rpm_set"), split_unit("Basic")
+    (('rpm_set', 'rpm'), ('Basic', None))
     """
     if len(label) > _MAX_NAME:
         return label, None
@@ -158,11 +143,6 @@ def split_unit(label: str) -> tuple[str, str | None]:
                 return name, text
     if _RPM.search(label):
         return label, "rpm"
-    glued = _GLUED.fullmatch(label.strip())
-    if glued and is_unit(glued["unit"]):
-        meant = matches(glued["name"], glued["unit"])
-        if meant and meant[0].score >= _VAGUE:
-            return glued["name"], glued["unit"]
     return label, None
 
 
