@@ -76,7 +76,7 @@ def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.f
     >>> median_in_pieces(lambda a, b: squares[a:b], 5)
     np.float64(4.0)
     """
-    about = _about(part, count, 0.5)
+    about = _guess_bracket(part, count, 0.5)
     return np.float64((about.below + about.above) / 2) if about.beyond else about.below
 
 
@@ -96,7 +96,7 @@ def quantile_in_pieces(part: Callable[[int, int], np.ndarray], count: int, share
     >>> round(quantile_in_pieces(lambda a, b: squares[a:b], 5, 0.9), 9)
     13.2
     """
-    about = _about(part, count, share)
+    about = _guess_bracket(part, count, share)
     return float(np.quantile([about.below, about.above], about.beyond))
 
 
@@ -108,12 +108,12 @@ class _About(NamedTuple):
     beyond: float
 
 
-def _about(part: Callable[[int, int], np.ndarray], count: int, share: float) -> _About:
+def _guess_bracket(part: Callable[[int, int], np.ndarray], count: int, share: float) -> _About:
     if count >= _MAX_SORTED:
         tried = _sample_parts(part, count)
         for around in _AROUND if tried.size else ():
             low, high = np.quantile(tried, [max(share - around, 0), min(share + around, 1)])
-            about = _near(
+            about = _bracketed_quantile(
                 part,
                 count,
                 (low if share > around else -np.inf, high if share + around < 1 else np.inf),
@@ -139,7 +139,7 @@ def _sample_parts(part: Callable[[int, int], np.ndarray], count: int) -> np.ndar
     return tried[~np.isnan(tried)]
 
 
-def _near(
+def _bracketed_quantile(
     part: Callable[[int, int], np.ndarray], count: int, bracket: tuple[float, float], share: float
 ) -> _About | None:
     """Return the numbers around a quantile, from a bracket; None if it is outside."""

@@ -96,11 +96,11 @@ def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: fl
 def _usual_load(load: np.ndarray, zero: float) -> float:
     """Return the 95 % quantile of the load above its zero."""
 
-    def above(first: int, last: int) -> np.ndarray:
+    def is_above(first: int, last: int) -> np.ndarray:
         some = load[first:last] - zero
         return some[np.isfinite(some)]
 
-    usual = quantile_in_pieces(above, load.size, 0.95)
+    usual = quantile_in_pieces(is_above, load.size, 0.95)
     return np.inf if np.isnan(usual) else float(usual)
 
 

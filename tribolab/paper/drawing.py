@@ -200,7 +200,7 @@ def all_loads(data: PaperData, name: str) -> FigureAndText:
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     models = [data.model(name, force) for force in data.forces]
     off = [
-        float(np.abs(m.friction_coefficient / _at(model, m) - 1).max())
+        float(np.abs(m.friction_coefficient / _model_at(model, m) - 1).max())
         for m, model in zip(measured, models, strict=True)
     ]
     worst = f" Points and lines part by at most {100 * max(off):.2g} %."
@@ -209,7 +209,7 @@ def all_loads(data: PaperData, name: str) -> FigureAndText:
     ) + worst
 
 
-def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
+def _model_at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
     v = np.log(points.sliding_speed.values)
     return np.interp(v, np.log(model.sliding_speed.values), model.friction_coefficient.values)
 

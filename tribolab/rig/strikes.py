@@ -322,12 +322,12 @@ def one_way(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     first, last = float(row.start_s) - 1.0, float(row.stop_s) + 1.0
     shift = float(run.facts["clock_shift_at_middle_s"])
 
-    def within(log: xr.Dataset, later: float) -> xr.Dataset:
+    def cut(log: xr.Dataset, later: float) -> xr.Dataset:
         time = log.time.values + later
         return log.isel(time=(time >= first) & (time <= last))
 
     facts = {"start_s": first, "stop_s": last}
-    return within(run.force_log, 0.0), within(run.motion_log, shift), facts
+    return cut(run.force_log, 0.0), cut(run.motion_log, shift), facts
 
 
 def ramps(run: SimulatedRun, rng: np.random.Generator) -> Struck:

@@ -103,9 +103,9 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
     if not earlier.mark or not isinstance(noted, dict) or noted.get("mark") != earlier.mark:
         return None
     signals = marked[[name for name in noted["variables"] if name not in marked.coords]]
-    signals.attrs = _before(marked.attrs, noted["attrs"])
+    signals.attrs = _earlier_attrs(marked.attrs, noted["attrs"])
     for name, changed in noted["variables"].items():
-        signals.variables[name].attrs = _before(marked.variables[name].attrs, changed)
+        signals.variables[name].attrs = _earlier_attrs(marked.variables[name].attrs, changed)
     return signals
 
 
@@ -115,7 +115,7 @@ def _attribute_changes(before: Mapping[object, object], after: Mapping[object, o
     return {"was": was, "new": [str(k) for k in after if k not in before]}
 
 
-def _before(after: Mapping[object, object], changed: Json) -> Json:
+def _earlier_attrs(after: Mapping[object, object], changed: Json) -> Json:
     kept = {str(k): v for k, v in after.items() if k not in changed["new"] and k != READING}
     return kept | changed["was"]
 

@@ -90,7 +90,7 @@ def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Settin
     problems: dict[tuple[str | int, ...], SettingsProblem] = {}
     items = error.errors(include_url=False)
     for item in items:
-        if item["type"] == "too_short" and any(_within(item["loc"], o["loc"]) for o in items):
+        if item["type"] == "too_short" and any(_is_below(item["loc"], o["loc"]) for o in items):
             continue  # a list whose only element is wrong is not empty
         where, table = _walk(model, item["loc"])
         if len(problems) >= _HINTED:
@@ -99,7 +99,7 @@ def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Settin
     return list(problems.values())
 
 
-def _within(outer: tuple[str | int, ...], inner: tuple[str | int, ...]) -> bool:
+def _is_below(outer: tuple[str | int, ...], inner: tuple[str | int, ...]) -> bool:
     """Whether one location lies below another."""
     return len(inner) > len(outer) and inner[: len(outer)] == outer
 

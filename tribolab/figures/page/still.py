@@ -57,10 +57,10 @@ class _Box:
         across, up = self.x.place(x), self.y.place(y)
         if across is None or up is None:
             return None
-        return self.width * _near(across), self.height * (1 - _near(up))
+        return self.width * _clip(across), self.height * (1 - _clip(up))
 
 
-def _near(share: float) -> float:
+def _clip(share: float) -> float:
     return min(max(share, -1.0), 2.0)
 
 
@@ -140,8 +140,8 @@ def _boxes(
 def _panel(figure: FigureSpec, place: int, box: _Box, series: Sequence[Series]) -> Iterator[str]:
     panel = figure.panels[place]
     last = place == len(figure.panels) - 1
-    yield from _across(box, panel.x, shown=last)
-    yield from _names(box) if box.y.names else _up(box, panel.y)
+    yield from _x_ticks(box, panel.x, shown=last)
+    yield from _names(box) if box.y.names else _y_ticks(box, panel.y)
     sides = ("x", box.left), ("y", box.top), ("width", box.width), ("height", box.height)
     size = " ".join(f'{name}="{coordinate(value)}"' for name, value in sides)
     yield f"<svg {size}>"
@@ -161,7 +161,7 @@ def _line(mark: Mark, box: _Box) -> str:
     """Return a line across a panel at a value, or a shaded interval."""
     scale, size = (box.x, box.width) if mark.side == "x" else (box.y, box.height)
     ends = [scale.place(value) for value in (mark.value, mark.until) if value is not None]
-    at = [size * (_near(e) if mark.side == "x" else 1 - _near(e)) for e in ends if e is not None]
+    at = [size * (_clip(e) if mark.side == "x" else 1 - _clip(e)) for e in ends if e is not None]
     hue, low, high = marks.hue(mark.colour), min(at, default=-1.0), max(at, default=-1.0)
     if mark.until is not None and len(at) == 2:
         place = {"x": low, "y": 0.0, "width": high - low, "height": box.height}
@@ -191,7 +191,7 @@ def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
         shown = [(point, size) for point, size in zip(at, sizes, strict=True) if point]
         yield from marks.drawn_points([p for p, _ in shown], curve, bars, [s for _, s in shown])
     elif curve.style == "band":
-        lower = [box.at(x, _above(y, box)) for x, y in zip(curve.x, curve.y, strict=True)]
+        lower = [box.at(x, _band_edge(y, box)) for x, y in zip(curve.x, curve.y, strict=True)]
         upper = [box.at(x, y) for x, y in zip(curve.x, curve.high, strict=True)]
         yield from marks.drawn_band([p for p in lower if p], [p for p in upper if p], curve)
     elif curve.style == "heat":
@@ -203,7 +203,7 @@ def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
         yield from marks.drawn_line([box.at(curve.x[k], curve.y[k]) for k in kept], curve)
 
 
-def _above(value: Any, box: _Box) -> Any:
+def _band_edge(value: Any, box: _Box) -> Any:
     """Return the lower edge of a band; below the range if it is not positive on a log axis."""
     if box.y.log and value is not None and not value > 0:
         return 10.0 ** (box.y.low - (box.y.high - box.y.low))
@@ -221,7 +221,7 @@ def _bars(curve: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, 
             yield from ((middle[1], ends[0][0], ends[1][0]) for _ in (1,) if ends[0] and ends[1])
             continue
         high = box.at(x, y + above)
-        low = box.at(x, _above(max(y - below, least), box))
+        low = box.at(x, _band_edge(max(y - below, least), box))
         if low is not None and high is not None:
             yield middle[0], low[1], high[1]
 
@@ -241,7 +241,7 @@ def _rows(curve: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
             )
 
 
-def _across(box: _Box, axis: Axis, *, shown: bool) -> Iterator[str]:
+def _x_ticks(box: _Box, axis: Axis, *, shown: bool) -> Iterator[str]:
     bottom = box.top + box.height
     for value, place in ticks(box.x, max(2, int(box.width / 70))):
         x = box.left + place * box.width
@@ -252,7 +252,7 @@ def _across(box: _Box, axis: Axis, *, shown: bool) -> Iterator[str]:
         yield _text(box.left + box.width / 2, bottom + 34, _named(axis), "middle")
 
 
-def _up(box: _Box, axis: Axis) -> Iterator[str]:
+def _y_ticks(box: _Box, axis: Axis) -> Iterator[str]:
     for value, place in ticks(box.y, max(2, int(box.height / 40))):
         y = box.top + box.height * (1 - place)
         yield f'<path class="grid" d="{marks.path([(box.left, y), (box.left + box.width, y)])}"/>'

@@ -117,7 +117,7 @@ def lubrication_factors(
     colours = surface_colours([*surfaces, *factors])
     series = []
     for name, data in factors.items():
-        over = _over(data)
+        over = _relative_separation(data)
         for key, words, style, panel in _FACTORS:
             numbers = {"separation_over_rms_roughness": over, key: data[key].values}
             series.append(
@@ -150,7 +150,7 @@ def lubrication_factors(
     )
 
 
-def _over(factors: xr.Dataset) -> np.ndarray:
+def _relative_separation(factors: xr.Dataset) -> np.ndarray:
     """Return the separation in units of the roughness."""
     if "relative_separation" in factors.coords:
         return factors["relative_separation"].to_numpy()

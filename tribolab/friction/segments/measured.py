@@ -57,7 +57,7 @@ def measured(
     settings = {"trim": trim, "velocity_source": source}
     if position_range is not None:
         low, high = sorted(to_si(x, "m", name="position_range") for x in position_range)
-        trimmed_start, trimmed_stop = _within(run, trimmed_start, trimmed_stop, low, high)
+        trimmed_start, trimmed_stop = _narrow(run, trimmed_start, trimmed_stop, low, high)
         settings |= {"position_low_m": low, "position_high_m": high}
     first = np.searchsorted(time, trimmed_start, side="left")
     last = np.searchsorted(time, trimmed_stop, side="right")
@@ -96,7 +96,7 @@ def measured(
     return stamp(result, **(run.attrs | settings))
 
 
-def _within(
+def _narrow(
     run: xr.Dataset,
     start: np.ndarray,
     stop: np.ndarray,

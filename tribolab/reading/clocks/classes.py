@@ -139,10 +139,10 @@ def _sums_by_lag(
     piled = [np.concatenate([np.zeros(wide + 1), np.cumsum(s)]) for s in sums]
     piled = [np.concatenate([p, np.full(wide, p[-1])]) for p in piled]
 
-    def below(p: Array, first: int, last: int) -> Array:
+    def sum_below(p: Array, first: int, last: int) -> Array:
         return p[last : last + len(lags)] - p[first : first + len(lags)]
 
-    whole = [below(p, 0, wide) for p in piled]
+    whole = [sum_below(p, 0, wide) for p in piled]
     values = np.unique(classes).tolist()
     if len(ends) > _CHANGES_PER_CLASS * len(values):
         return lags, whole, _correlated_classes(sums[:2], classes, lags)
@@ -151,7 +151,9 @@ def _sums_by_lag(
     def by_class() -> Iterator[tuple[Array, Array]]:
         for k in values:
             own = [span for span in spans if classes[span[0]] == k]
-            number, total = (reduce(np.add, (below(p, *span) for span in own)) for p in piled[:2])
+            number, total = (
+                reduce(np.add, (sum_below(p, *span) for span in own)) for p in piled[:2]
+            )
             yield number, total
 
     return lags, whole, by_class()

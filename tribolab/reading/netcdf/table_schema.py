@@ -165,7 +165,9 @@ def _are_whole(values: np.ndarray) -> bool:
     return bool((values == np.round(values)).all())
 
 
-def _below(limit_of: Callable[[np.ndarray], Any], wrong: Callable[..., Any]) -> Callable[..., Any]:
+def _limit_check(
+    limit_of: Callable[[np.ndarray], Any], wrong: Callable[..., Any]
+) -> Callable[..., Any]:
     """Return a check that compares the extreme first, as most data are within the limits."""
 
     def check(values: np.ndarray, limit: Any, _: frozenset[str]) -> np.ndarray | None:
@@ -206,10 +208,10 @@ def _not_listed(values: np.ndarray, listed: Sequence[Any], _: frozenset[str]) ->
 _CHECKS: Mapping[str, Callable[[np.ndarray, Any, frozenset[str]], np.ndarray | None]] = {
     "required": _missing,
     "unique": _repeated,
-    "minimum": _below(np.fmin.reduce, np.less),
-    "maximum": _below(np.fmax.reduce, np.greater),
-    "exclusiveMinimum": _below(np.fmin.reduce, np.less_equal),
-    "exclusiveMaximum": _below(np.fmax.reduce, np.greater_equal),
+    "minimum": _limit_check(np.fmin.reduce, np.less),
+    "maximum": _limit_check(np.fmax.reduce, np.greater),
+    "exclusiveMinimum": _limit_check(np.fmin.reduce, np.less_equal),
+    "exclusiveMaximum": _limit_check(np.fmax.reduce, np.greater_equal),
     "enum": _not_listed,
     "pattern": _no_match,
 }

@@ -85,7 +85,7 @@ def take_marks(
             break
         taken += [Marked(number, count) for _, number, count in marks]
         for end, _, _ in marks:
-            _without(parts, end)
+            _mask_mark(parts, end)
     return taken
 
 
@@ -132,7 +132,7 @@ def _largest_other(
     return largest
 
 
-def _without(parts: Sequence[np.ndarray], number: float) -> None:
+def _mask_mark(parts: Sequence[np.ndarray], number: float) -> None:
     for part in parts:
         if not anywhere(lambda piece: piece == number, part):
             continue

@@ -34,7 +34,7 @@ def over_load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
             found = [
                 (curve.outcome.normal_force, row)
                 for curve in curves
-                if (row := _at(curve.points, speed)) is not None
+                if (row := _point_at(curve.points, speed)) is not None
             ]
             if len(found) < _MIN_LOADS:
                 continue
@@ -67,7 +67,7 @@ def over_load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
     return figures
 
 
-def _at(points: tuple[Row, ...], speed: float) -> Row | None:
+def _point_at(points: tuple[Row, ...], speed: float) -> Row | None:
     for row in points:
         v = number_of(row, "sliding_speed_m_s")
         if (

@@ -64,11 +64,11 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
         edges = 1e-3 * float(wavenumber[0]), 1e9 * float(wavenumber[-1])
         return SelfAffine(float(hurst), float(np.exp(rolloff)), plateau, *edges)
 
-    def off(given: np.ndarray) -> np.ndarray:
+    def misfit(given: np.ndarray) -> np.ndarray:
         return level - np.log(psd_1d(law(*given), wavenumber))
 
     def residual(given: np.ndarray) -> np.ndarray:
-        miss = off(given)
+        miss = misfit(given)
         return (miss - np.average(miss, weights=weights)) / relative
 
     bounds = ([ends[0] - 2.0, 0.02], [ends[1], 4.0])
@@ -77,7 +77,7 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
         for start in ends[0] + np.array(_STARTS) * np.diff(ends)
     ]
     best = min(tried, key=lambda fit: fit.cost)
-    plateau = float(np.exp(np.average(off(best.x), weights=weights)))
+    plateau = float(np.exp(np.average(misfit(best.x), weights=weights)))
     # reached if the surface does not follow the law
     growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))
     rolloff, hurst = best.x
