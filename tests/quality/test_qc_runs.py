@@ -262,7 +262,7 @@ def test_a_run_that_never_holds_its_speed_is_suspect_and_says_so():
     )
     found = check_run(ramp)
     assert found.status == "suspect"
-    assert "a test by ramps" in message(found, "segments")
+    assert "speed-ramp test" in message(found, "segments")
 
 
 def test_a_run_of_which_nothing_was_examined_is_suspect():

@@ -86,7 +86,7 @@ def running_in_table(outcome: Outcome) -> Table | None:
         found += [(run.name, settled[0])] if len(settled) == 1 else []
     if len(outcome.runs) > _MAX_ROWS or not any(row.changes for _, row in found):
         return None
-    table = _table("run", "runs in over", "steady µ ± U95", "mean over all")
+    table = _table("run", "running-in distance", "steady µ ± U95", "whole-run mean")
     for name, row in found:
         table.add_row(name, *_cells(row))
     return table

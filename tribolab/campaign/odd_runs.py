@@ -91,7 +91,7 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
         side = "above" if odd.deviation > 0 else "below"
         text = (
             f"friction is {percent(abs(odd.deviation))} {side} that of its "
-            f"{len(runs) - 1} repeats, {usual}. The mean includes it. Check mounting, zero and "
+            f"{len(runs) - 1} repeats, {usual}. It is still in the mean. Check mounting, zero and "
             "specimen; reject the run in review.toml if it is wrong"
         )
         checks[name] = _row("suspect", text, odd.deviation)

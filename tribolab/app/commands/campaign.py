@@ -217,7 +217,7 @@ def run(
                 say(f"tribolab: {line}", to_stderr=True)
             raise typer.Exit(UNREADABLE)
         if written:
-            say(f"{file} is written: complete it with what is known of the measurement")
+            say(f"{file} is written. Add what you know: geometry, media, uncertainties")
         for line in () if i_know or written else terminal.outside_lines(outcome.campaign):
             say(f"tribolab: {line}", to_stderr=True)
         code = show_outcome(outcome, debug)

@@ -329,7 +329,7 @@ def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
         return ""
     radius = flat.attrs["form_radius_m"]
     return (
-        f"a circle of R = {number(radius)} m was taken off, which may be of the part or of its "
-        f"waviness: Pq is {number(1e6 * without)} um without it and {number(1e6 * with_it)} um "
-        'with the tilt alone taken off (form = "tilt" in [roughness], for a flat part)'
+        f"a circle of R = {number(radius)} m was removed; it may be part shape or part of the "
+        f"waviness. Pq is {number(1e6 * without)} um after removal, {number(1e6 * with_it)} um if "
+        'only the tilt is removed (form = "tilt" in [roughness], for a flat part)'
     )

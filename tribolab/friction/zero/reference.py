@@ -312,14 +312,13 @@ def _outside_zero(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
         strokes, 0.0, 0.0, "nothing", "none: no pair of strokes, no rest without load"
     )
     text = (
-        "the zero of the friction signal is not known: no strokes both ways at one speed, no rest "
-        "without load; its offset is in the friction and not in its error"
+        "the zero of the friction signal is not known: no strokes in both directions and no rest "
+        "without load. Any offset biases µ and is not in its uncertainty"
     )
     example = _example(strokes)
     cure = (
-        f'State `zero_uncertainty` (e.g. "{example}"), how far the signal may read from zero '
-        "without contact, in the [[run]], or of the column in the dialect; or measure strokes both "
-        "ways, or a rest without load."
+        f'State `zero_uncertainty` in [[run]] (e.g. "{example}": how far the signal may be from '
+        "zero without contact), or record strokes in both directions or a rest without load."
     )
     return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
 

@@ -100,10 +100,10 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     _ = subject.required_friction_signal  # without a segment, the check `schema` objects
     why = subject.missing_segment_reason
     if why and subject.is_ramp:
-        text = "a test by ramps: friction over speed includes the zero of the friction force"
+        text = "speed-ramp test: the curve includes the zero offset of the friction force"
         cure = (
-            "Record a rest without load, or ramps in both directions, for the zero. For intervals "
-            "of constant speed see `limits.segments.drift` in [qc]."
+            "Record a rest without load, or ramps in both directions, for the zero. To treat slow "
+            "ramps as constant speed, raise `limits.segments.drift` in [qc]."
         )
         return [Result("suspect", "", text, cure=cure)]
     if why:

@@ -277,7 +277,7 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         text = f"{len(spectra)} scans agree within a factor {factor:.3g} at all wavenumbers"
         return [Result("pass", "height", text, factor)]
     status = "fail" if factor > limits["fail"] else "suspect"
-    text = f"{subject.profile_names[odd]} has a spectrum up to {factor:.3g} times off the others'"
+    text = f"{subject.profile_names[odd]} has a spectrum up to a factor {factor:.3g} off the others"
     if len(spectra) == 2:
         text = f"the two scans differ by up to a factor {factor:.3g} in their spectra"
     return [Result(status, "height", text, factor, "1", subject.profile_names[odd])]

@@ -46,7 +46,7 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
         FigureSpec(
             id="ramps",
             section="view-ramp",
-            title="Friction over speed, ramps",
+            title="Friction vs. speed, ramps",
             note="Means and standard deviations over small ranges of speed. Filled: the speed "
             "rises; open: it falls. The zero of the friction force is not removed.",
             alt=f"Friction over the momentary speed of {many(len(runs), 'run')}.",

@@ -45,11 +45,11 @@ def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
         FigureSpec(
             id="static-kinetic",
             section="view-static",
-            title="Static and kinetic friction over the time of rest",
-            note="Filled: static friction of each start ± U95; open: kinetic friction after it.",
+            title="Static and kinetic friction vs. hold time",
+            note="Filled: static friction at each restart ± U95; open: kinetic friction after it.",
             alt=f"Static and kinetic friction coefficients of {many(len(chosen), 'run')} over the "
             "time of rest.",
-            panels=(Panel(Axis("time of rest", "s", log=True), Axis("friction coefficient µ")),),
+            panels=(Panel(Axis("hold time", "s", log=True), Axis("friction coefficient µ")),),
             series=tuple(series),
             width="whole",
             height=430,

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from tribolab.core.wording import force_text, many
+from tribolab.core.wording import force_text, many, percent
 from tribolab.records.judgement import check_words, is_bad, why
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
@@ -15,6 +15,8 @@ _GRAVE = ("error", "fail", "suspect")
 _MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in the doubt about runs left out
 _REPEATS = "repeats"  # name of the check
 _COMPARE = "Compare its trace with those of its repeats."
+_COMPARE_ALL = "They are still in the means. Compare their traces with those of their repeats."
+_UNCERTAIN = 0.25  # U95 of a mean over the mean, of which a result of one digit is left
 _UNCALIBRATED = "statistical only"
 
 
@@ -40,6 +42,7 @@ def doubts(document: Mapping[str, Any]) -> list[Doubt]:
         Content of report.json; short entries of the runs suffice.
     """
     found = [*_of_findings(document), *_missing_curves(document)]
+    found += _uncertain_means(document["curves"])
     found.sort(key=lambda doubt: _GRAVE.index(doubt.level))
     return [*_left_out(document["runs"]), *_odd_runs(document["runs"]), *found, *_notes(document)]
 
@@ -55,7 +58,9 @@ def _odd_runs(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
     if len(odd) > _MAX_NAMED:
         names = ", ".join(name for name, _ in odd[:_MAX_LISTED])
         more = f" and {len(odd) - _MAX_LISTED} more" if len(odd) > _MAX_LISTED else ""
-        yield Doubt("suspect", many(len(odd), "odd repeat"), f"{names}{more}", _COMPARE, "#runs")
+        yield Doubt(
+            "suspect", many(len(odd), "odd repeat"), f"{names}{more}", _COMPARE_ALL, "#runs"
+        )
         return
     for name, message in odd:
         yield Doubt("suspect", name, message.rstrip("."), _COMPARE, f"run {name}")
@@ -71,6 +76,29 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
         more = f" and {len(bad) - _MAX_LISTED} more" if len(bad) > _MAX_LISTED else ""
         yield Doubt(
             "fail", many(len(bad), "run"), f"left out: {', '.join(named)}{more}", "", "#runs"
+        )
+
+
+def _uncertain_means(curves: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
+    """Yield the conditions whose repeats scatter so much that their mean is uncertain."""
+    wide = []
+    for curve in curves:
+        shares = sorted(
+            point["friction_coefficient_U95"] / abs(point["friction_coefficient"])
+            for point in curve["points"]
+            if point["runs"] > 1 and point["friction_coefficient"]
+            if point["friction_coefficient_U95"] is not None
+        )
+        if shares and (usual := shares[len(shares) // 2]) > _UNCERTAIN:
+            condition = system_name(curve["surface"], curve["medium"], curve["runs"])
+            load = force_text(curve["nominal_normal_force_N"])
+            wide.append((usual, f"{condition}, {load} (± {percent(usual)})"))
+    if wide:
+        named = "; ".join(text for _, text in sorted(wide, reverse=True)[:_MAX_NAMED])
+        more = f"; and {len(wide) - _MAX_NAMED} more" if len(wide) > _MAX_NAMED else ""
+        text = f"repeats scatter so much that their mean is uncertain: {named}{more}"
+        yield Doubt(
+            "suspect", "", text, "Look for a wrong run, or repeat the measurement.", "#runs"
         )
 
 

@@ -120,9 +120,9 @@ HEADS: dict[str, str] = {
     "State": "ok; suspect: a check doubts it; odd: it contradicts its repeats; rejected: its "
     "checks failed, or a person rejected it, and no curve includes it; failed: not read.",
     "Dev.": "Deviation from the median of the usable repeats at the chosen speed.",
-    "Runs in over": "Distance after which friction is steady.",
+    "Running-in distance": "Distance after which friction is steady.",
     "Steady µ": "Mean friction coefficient ± U95 (within the run) of the steady part.",
-    "Half of it at": "Speed at which µ drops to half its maximum.",
+    "Speed at half µ max": "Speed at which µ drops to half its maximum.",
     "Noise": GLOSSARY["Noise"],
     "Drift": GLOSSARY["Drift"],
     "Left out": GLOSSARY["Left out"],

@@ -6,7 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tribolab.core.wording import load_text
+from tribolab.friction.points.mean_of_repeats import mean_of_repeats
+from tribolab.records.judgement import is_bad
 from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
 from tribolab.records.runs.running_in_record import RunningIn, length_text
@@ -49,7 +53,7 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
     heads = [
         "Condition",
         "Load",
-        *(["µ"] if single else ["Highest µ", "Half of it at", "Lowest µ"]),
+        *(["µ"] if single else ["Highest µ", "Speed at half µ max", "Lowest µ"]),
     ]
     heads += ["Shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
     rows = []
@@ -94,8 +98,12 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
 
 
 def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
-    """Return running-in and steady friction of each run at one speed; None without such runs."""
+    """Return running-in and steady friction of each run at one speed; None without such runs.
+
+    The last rows are the means of repeats, with the U95 of the scatter between them.
+    """
     rows = []
+    repeats: dict[tuple[str, str, float | None, str], list[float]] = {}
     for run in document["runs"]:
         if len(run["running_in"]) != 1:
             continue
@@ -107,13 +115,21 @@ def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
             run["name"],
             *(_mean(settled, name) if finished or name == "mean" else "–" for name in _MEANS),
             f"{over} of {end}" if finished and settled["start_m"] else over,
-            settled["verdict"],
+            "steady after it" if finished and settled["start_m"] else settled["verdict"],
             plain_speed(settled["sliding_speed_m_s"]),
         ]
-        rows.append(
-            KeyRow(tuple(cells), run["surface"], run["medium"], run["nominal_normal_force_N"])
-        )
-    heads = ("Run", "Steady µ", "Mean over all", "Runs in over", "Verdict", "Speed")
+        condition = run["surface"], run["medium"], run["nominal_normal_force_N"]
+        rows.append(KeyRow(tuple(cells), *condition))
+        if finished and not is_bad(run):
+            level = float(settled["steady_friction_coefficient"])
+            repeats.setdefault((*condition, cells[-1]), []).append(level)
+    for (surface, medium, load, speed), levels in repeats.items():
+        if len(levels) > 1:
+            found = mean_of_repeats(np.array(levels), np.full(len(levels), np.nan))
+            name = f"mean of {len(levels)} repeats"
+            cells = [name, error_text(found.mean, found.u95), "", "", "", speed]
+            rows.append(KeyRow(tuple(cells), surface, medium, load))
+    heads = ("Run", "Steady µ", "Whole-run mean", "Running-in distance", "Verdict", "Speed")
     return KeyTable(heads, tuple(rows)) if rows else None
 
 

@@ -14,13 +14,13 @@ from tribolab.report.page.key_numbers import (
 )
 
 _TITLES = {
-    "curve": "Friction over speed",
+    "curve": "µ vs. speed",
     "static": "Static and kinetic",
-    "distance": "Over distance",
-    "time": "Over time",
-    "cycles": "Over cycles",
-    "ramp": "Over speed, ramps",
-    "load": "Over load",
+    "distance": "µ vs. distance",
+    "time": "µ vs. time",
+    "cycles": "µ vs. cycles",
+    "ramp": "µ vs. speed, ramps",
+    "load": "µ vs. load",
     "surfaces": "Surfaces",
 }
 _MIN_SPEEDS = 2  # smallest number of speeds of a curve
