@@ -42,6 +42,7 @@ from tribolab.reading.clocks.motion import Motion, clean_motion
 from tribolab.reading.clocks.onset import refine_by_onsets
 from tribolab.reading.clocks.starts import (
     Logs,
+    StartShift,
     changes,
     shift_from_starts,
 )
@@ -83,166 +84,225 @@ def estimate_clock_shift(
     difference between methods: friction that rises before the sample slides, or only after slack is
     taken up, shifts the result by that duration.
     """
-    with one_thread():
-        return _estimated(force_time, force, motion_time, velocity, expected, dated)
+    try:
+        with one_thread():
+            search = _Search(force_time, force, motion_time, velocity)
+            search.by_classes(expected, dated)
+            search.by_starts()
+            search.by_motion()
+            return search.combined()
+    except _UndeterminedError:
+        return None
 
 
-def _estimated(
-    force_time: Array,
-    force: Array,
-    motion_time: Array,
-    velocity: Array,
-    expected: float,
-    dated: bool,
-) -> ShiftEstimate | None:
-    good = np.abs(force) < _MAX_POSSIBLE_VALUE
-    force_time, force = force_time[good], force[good]
-    velocity = np.where(np.abs(velocity) < _MAX_POSSIBLE_VALUE, velocity, 0.0)
-    if len(force_time) < 16 or len(motion_time) < 16 or np.ptp(force) == 0:
-        return None
-    motion = clean_motion(motion_time, velocity)
-    if not motion.velocity.any():
-        return None
-    classes, way = motion_classes(motion.velocity)
-    if classes.min() == classes.max():
-        return None
-    force = (force - force.mean()) / force.std()
-    basis = Basis(motion_time, motion)
-    if not len(basis.begins):  # moving from the first to the last sample
-        return None
-    apart = limits.MIN_DISTANCE_OF_SHIFTS.value * basis.stroke
-    coarse = coarse_shift(force_time, force, motion_time, classes, expected, apart)
-    if coarse is None:
-        return None
-    fit = Classes(force_time, force, motion_time, classes)
-    may = [Candidate(coarse.shift, np.nan, 0.0, 0)]
-    # strokes of very different speeds are not interchangeable
-    wide = _has_different_speeds(motion, way)
-    if len(coarse.rivals) and not wide:
-        shifts = np.concatenate([[coarse.shift], coarse.rivals])
-        if dated and abs(coarse.shift - expected) < limits.MAX_ERROR_OF_DATES.value:
-            shifts = shifts[np.abs(shifts - expected) < limits.MAX_ERROR_OF_DATES.value]
-        may = candidates(force_time, force, basis, shifts)
-    chosen = likeliest(may)
-    shift = _refined(fit, chosen.shift, coarse.half)
-    significance = fit.significance(shift)
-    if significance < limits.MIN_F_RATIO_WITH_FIT.value:
-        return None
-    # any sequence of classes explains a drift, but no shift fits it precisely
-    uncertainty = fit.uncertainty(shift)
-    sharp = (
-        limits.MAX_UNCERTAINTY_OF_SHIFT.value * float(np.ptp(motion_time)) / len(np.unique(classes))
-    )
-    placed = chosen.unexplained < limits.MAX_UNEXPLAINED_OF_PLACE.value
-    weak = significance < limits.MIN_F_RATIO.value
-    vague = uncertainty > sharp and not placed
-    if vague and (weak or not wide):
-        return None
-    ways = {"classes": Estimate(shift, uncertainty)}
-    # friction remains at rest, so the shift may be late by up to a rest
-    span = max(8.0 * coarse.half, 1.25 * float(median(np.diff(motion_time[changes(way)]))))
-    logs = Logs(force_time, force, motion_time, motion.velocity, way)
-    ratio = fit.ratio(shift)
-    unexplained = min(
-        limits.MAX_MISFIT_OF_STARTS.value * (1.0 - ratio) + limits.ROUNDING_OF_VARIANCE.value,
-        1.0 - limits.MIN_EXPLAINED_OF_STARTS.value * ratio,
-    )
-    reach = 0.5 * basis.stroke if placed else np.inf
+class _UndeterminedError(Exception):
+    """Raised if the force does not vary with the motion."""
 
-    def allowed(at: Array) -> NDArray[np.bool_]:
-        return (np.abs(at - shift) <= reach) & (1.0 - fit.ratios(at) < unexplained)
 
-    seen = shift_from_starts(logs, shift, span, allowed)
-    estimate = ShiftEstimate(shift, uncertainty, ratio)
-    if seen is not None:
-        estimate = ShiftEstimate(seen.shift, seen.uncertainty, fit.ratio(seen.shift), *seen[2:])
-    starts, onsets, agree = estimate, estimate, True
-    if estimate.rate == 0.0:
-        onsets = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
-        # of two consistent methods, the more precise one is kept
-        agree = (
-            abs(onsets.shift - starts.shift)
-            <= limits.MAX_ERRORS_OF_AGREEMENT.value * starts.uncertainty
+class _Search:
+    """Search for the shift: each method narrows the one before and adds its result to `ways`."""
+
+    def __init__(self, force_time: Array, force: Array, motion_time: Array, velocity: Array):
+        good = np.abs(force) < _MAX_POSSIBLE_VALUE
+        self.force_time, force = force_time[good], force[good]
+        velocity = np.where(np.abs(velocity) < _MAX_POSSIBLE_VALUE, velocity, 0.0)
+        _require(len(self.force_time) >= 16 and len(motion_time) >= 16 and np.ptp(force) != 0)
+        self.motion_time, self.motion = motion_time, clean_motion(motion_time, velocity)
+        _require(self.motion.velocity.any())
+        self.classes, self.way = motion_classes(self.motion.velocity)
+        _require(self.classes.min() != self.classes.max())
+        self.force = (force - force.mean()) / force.std()
+        self.basis = Basis(motion_time, self.motion)
+        _require(len(self.basis.begins))  # else moving from the first to the last sample
+        self.fit = Classes(self.force_time, self.force, motion_time, self.classes)
+        # strokes of very different speeds are not interchangeable
+        self.wide = _has_different_speeds(self.motion, self.way)
+        self.ways: dict[str, Estimate] = {}
+
+    def by_classes(self, expected: float, dated: bool) -> None:
+        """Find the shift by velocity classes, of several the likeliest."""
+        apart = limits.MIN_DISTANCE_OF_SHIFTS.value * self.basis.stroke
+        coarse = coarse_shift(
+            self.force_time, self.force, self.motion_time, self.classes, expected, apart
         )
-        vaguer = agree and onsets.uncertainty > starts.uncertainty
-        estimate = starts if seen is not None and vaguer else onsets
-    # slack or sticking would delay slow starts more, which only the first method uses
-    twice = wide and not weak and seen is not None and onsets is not starts
-    twice = twice and starts_agree(starts, onsets, basis.stroke)
-    if vague and not twice:
-        return None
-    # starts with a large error were searched at a wrong position
-    if not twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
-        repeated = ShiftEstimate(shift, uncertainty, ratio)
-        repeated = _sharpened(repeated, force_time, force, motion_time, motion.velocity, fit)
-        estimate = repeated if repeated.uncertainty < estimate.uncertainty else estimate
-    if estimate.shift != shift:
-        ways["starts"] = Estimate(estimate.shift, estimate.uncertainty)
-    middle = 0.5 * (motion_time[0] + motion_time[-1])
-    durations = np.diff(motion_time[changes(way)])
-    stroke = float(median(durations[durations > 0.1 * durations.max()]))  # or rest
-    ends = durations[[0, -1]]
-    least = 5.0 * estimate.uncertainty
-    near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
-    if estimate.rate != 0.0:
-        basis = Basis(motion_time + estimate.rate * (motion_time - middle), motion)
-    joint = shift_from_motion(force_time, force, basis, estimate.shift, near, least)
-    if weak and (joint is None or joint.unexplained > limits.MAX_UNEXPLAINED_OF_AGREEMENT.value):
-        return None
-    if joint is not None:
-        apart = limits.CLOCK_RATE_ERROR.value if estimate.rate == 0.0 else estimate.rate_uncertainty
-        error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
-        ways["motion"] = Estimate(joint.shift, error)
-        if weak and not placed and abs(joint.shift - estimate.shift) > 0.5 * sharp:
-            return None
-        stroke = joint.stroke
-    sharp_fit = (
-        joint is not None and joint.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
-    )
-    if sharp_fit and seen is not None and not agree and consistent(seen, ways["motion"]):
-        estimate, ways["starts"] = (
-            starts,
-            Estimate(*starts[:2]),
-        )  # two methods contradict the onsets
-    known = (
-        "starts" in ways and estimate.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
-    )
-    if twice and contradicted(ways, stroke):
-        other = onsets if estimate is starts else starts
-        combined, part = (
-            widened(ways["starts"], Estimate(*other[:2])),
-            limits.MIN_ERROR_OF_SHIFT.value,
+        if coarse is None:
+            raise _UndeterminedError
+        self.coarse, self.may = coarse, [Candidate(coarse.shift, np.nan, 0.0, 0)]
+        if len(coarse.rivals) and not self.wide:
+            shifts = np.concatenate([[coarse.shift], coarse.rivals])
+            if dated and abs(coarse.shift - expected) < limits.MAX_ERROR_OF_DATES.value:
+                shifts = shifts[np.abs(shifts - expected) < limits.MAX_ERROR_OF_DATES.value]
+            self.may = candidates(self.force_time, self.force, self.basis, shifts)
+        self.chosen = likeliest(self.may)
+        shift = _refined(self.fit, self.chosen.shift, coarse.half)
+        significance = self.fit.significance(shift)
+        _require(significance >= limits.MIN_F_RATIO_WITH_FIT.value)
+        # any sequence of classes explains a drift, but no shift fits it precisely
+        self.first = Estimate(shift, self.fit.uncertainty(shift))
+        duration = float(np.ptp(self.motion_time)) / len(np.unique(self.classes))
+        self.sharp = limits.MAX_UNCERTAINTY_OF_SHIFT.value * duration
+        self.placed = self.chosen.unexplained < limits.MAX_UNEXPLAINED_OF_PLACE.value
+        self.weak = significance < limits.MIN_F_RATIO.value
+        self.vague = self.first.uncertainty > self.sharp and not self.placed
+        _require(not self.vague or (self.wide and not self.weak))
+        self.ways["classes"] = self.first
+
+    def by_starts(self) -> None:
+        """Refine the shift by the starts of motion: of all speeds, and of fast strokes."""
+        shift, uncertainty = self.first
+        # friction remains at rest, so the shift may be late by up to a rest
+        durations = np.diff(self.motion_time[changes(self.way)])
+        self.span = max(8.0 * self.coarse.half, 1.25 * float(median(durations)))
+        ratio = self.fit.ratio(shift)
+        self.seen = self._seen_starts(ratio)
+        estimate = ShiftEstimate(shift, uncertainty, ratio)
+        if self.seen is not None:
+            explained = self.fit.ratio(self.seen.shift)
+            estimate = ShiftEstimate(*self.seen[:2], explained, *self.seen[2:])
+        self.starts, self.onsets, self.agree = estimate, estimate, True
+        if estimate.rate == 0.0:
+            self.onsets = self._by_onsets(estimate)
+            # of two consistent methods, the more precise one is kept
+            apart = abs(self.onsets.shift - estimate.shift)
+            self.agree = apart <= limits.MAX_ERRORS_OF_AGREEMENT.value * estimate.uncertainty
+            vaguer = self.agree and self.onsets.uncertainty > estimate.uncertainty
+            estimate = estimate if self.seen is not None and vaguer else self.onsets
+        # slack or sticking would delay slow starts more, which only the first method uses
+        twice = self.wide and not self.weak and self.seen is not None
+        twice = twice and self.onsets is not self.starts
+        self.twice = twice and starts_agree(self.starts, self.onsets, self.basis.stroke)
+        _require(not self.vague or self.twice)
+        # starts with a large error were searched at a wrong position
+        if not self.twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
+            repeated = self._by_onsets(ShiftEstimate(shift, uncertainty, ratio))
+            estimate = repeated if repeated.uncertainty < estimate.uncertainty else estimate
+        if estimate.shift != shift:
+            self.ways["starts"] = Estimate(estimate.shift, estimate.uncertainty)
+        self.estimate = estimate
+
+    def _seen_starts(self, ratio: float) -> StartShift | None:
+        """Return the shift by all starts, where the classes explain enough of the force."""
+        unexplained = min(
+            limits.MAX_MISFIT_OF_STARTS.value * (1.0 - ratio) + limits.ROUNDING_OF_VARIANCE.value,
+            1.0 - limits.MIN_EXPLAINED_OF_STARTS.value * ratio,
         )
-    elif wide and known and "motion" in ways and consistent(ways["starts"], ways["motion"]):
-        combined, part = ways["starts"], limits.MIN_ERROR_OF_SHIFT.value
-        if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
-            combined = widened(combined, ways["motion"])
-    elif sharp_fit:
-        first = ways["classes"]
-        if known:
-            vague = (
-                ways["motion"].uncertainty
-                > limits.MAX_ERROR_OF_CONFIRMATION.value * ways["starts"].uncertainty
-            )
-            first = widened(ways["starts"], ways["classes"]) if vague else ways["starts"]
-        combined, part = combine(first, ways["motion"]), limits.ERROR_WITHOUT_FIT.value
-    elif "starts" in ways and confirmed(ways["starts"], ways["classes"], stroke):
-        combined, part = widened(ways["starts"], ways["classes"]), limits.ERROR_WITHOUT_FIT.value
-    else:
-        return estimate._replace(ways=ways, refused="no two ways tell it")
-    error = float(np.hypot(combined.uncertainty, part * stroke))
-    estimate = estimate._replace(shift=combined.shift, uncertainty=error, ways=ways)
-    estimate = estimate._replace(explained=fit.ratio(combined.shift))
-    if (
-        wide
-        and not twice
-        and abs(estimate.shift - shift) > limits.MAX_DISTANCE_TO_CLASSES.value * stroke
-    ):
-        may = candidates(force_time, force, basis, np.array([estimate.shift, *coarse.rivals]))
-        return estimate._replace(refused=_doubt_about_starts(may, stroke))
-    rivals = [rival for rival in may if rival is not chosen]
-    doubt = _doubt(estimate, fit, coarse.half, stroke, chosen, rivals)
-    return estimate._replace(refused=doubt)
+        reach = 0.5 * self.basis.stroke if self.placed else np.inf
+
+        def allowed(at: Array) -> NDArray[np.bool_]:
+            near = np.abs(at - self.first.shift) <= reach
+            return near & (1.0 - self.fit.ratios(at) < unexplained)
+
+        velocity = self.motion.velocity
+        logs = Logs(self.force_time, self.force, self.motion_time, velocity, self.way)
+        return shift_from_starts(logs, self.first.shift, self.span, allowed)
+
+    def _by_onsets(self, estimate: ShiftEstimate) -> ShiftEstimate:
+        """Refine an estimate by the starts of all fast strokes."""
+        velocity, fit = self.motion.velocity, self.fit
+        onsets = refine_by_onsets(
+            self.force_time, self.force, self.motion_time, velocity, estimate.shift, fit.period
+        )
+        if onsets is None:
+            return estimate
+        apart = abs(onsets.shift - estimate.shift)
+        # the shift is known at the fast strokes; elsewhere the clock rates add uncertainty
+        away = limits.CLOCK_RATE_ERROR.value * (onsets.time - self.middle)
+        error = float(np.hypot(onsets.uncertainty, away))
+        if apart > 3.0 * estimate.uncertainty:  # the methods disagree: neither is trusted more
+            error = max(error, apart)
+        return ShiftEstimate(onsets.shift, error, fit.ratio(onsets.shift))
+
+    @property
+    def middle(self) -> float:
+        """Middle of the motion log [s], on its own clock."""
+        return float(0.5 * (self.motion_time[0] + self.motion_time[-1]))
+
+    def by_motion(self) -> None:
+        """Fit the force by all effects of the motion, near the estimate by the starts."""
+        estimate = self.estimate
+        durations = np.diff(self.motion_time[changes(self.way)])
+        self.stroke = float(median(durations[durations > 0.1 * durations.max()]))  # or rest
+        least = 5.0 * estimate.uncertainty
+        inside = min(0.4 * self.stroke, 0.8 * float(durations[[0, -1]].min()))
+        near = min(self.span, max(least, inside))
+        if estimate.rate != 0.0:
+            drift = estimate.rate * (self.motion_time - self.middle)
+            self.basis = Basis(self.motion_time + drift, self.motion)
+        joint = shift_from_motion(
+            self.force_time, self.force, self.basis, estimate.shift, near, least
+        )
+        agrees = limits.MAX_UNEXPLAINED_OF_AGREEMENT.value
+        _require(not self.weak or (joint is not None and joint.unexplained <= agrees))
+        self.sharp_fit = False
+        if joint is None:
+            return
+        rate = estimate.rate_uncertainty if estimate.rate else limits.CLOCK_RATE_ERROR.value
+        error = float(np.hypot(joint.uncertainty, rate * (joint.time - self.middle)))
+        self.ways["motion"] = Estimate(joint.shift, error)
+        apart = abs(joint.shift - estimate.shift)
+        _require(not self.weak or self.placed or apart <= 0.5 * self.sharp)
+        self.stroke = joint.stroke
+        self.sharp_fit = joint.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * self.stroke
+        # two methods contradict the onsets
+        if (
+            self.sharp_fit
+            and self.seen
+            and not self.agree
+            and consistent(self.seen, self.ways["motion"])
+        ):
+            self.estimate, self.ways["starts"] = self.starts, Estimate(*self.starts[:2])
+
+    def combined(self) -> ShiftEstimate:
+        """Return the shift by all methods, with the reason if it is refused."""
+        found = self._two_methods()
+        if found is None:
+            return self.estimate._replace(ways=self.ways, refused="no two ways tell it")
+        combined, part = found
+        estimate = self.estimate._replace(
+            shift=combined.shift,
+            uncertainty=float(np.hypot(combined.uncertainty, part * self.stroke)),
+            explained=self.fit.ratio(combined.shift),
+            ways=self.ways,
+        )
+        moved = abs(estimate.shift - self.first.shift)
+        far = moved > limits.MAX_DISTANCE_TO_CLASSES.value * self.stroke
+        if self.wide and not self.twice and far:
+            shifts = np.array([estimate.shift, *self.coarse.rivals])
+            may = candidates(self.force_time, self.force, self.basis, shifts)
+            return estimate._replace(refused=_doubt_about_starts(may, self.stroke))
+        rivals = [rival for rival in self.may if rival is not self.chosen]
+        doubt = _doubt(estimate, self.fit, self.coarse.half, self.stroke, self.chosen, rivals)
+        return estimate._replace(refused=doubt)
+
+    def _two_methods(self) -> tuple[Estimate, float] | None:
+        """Return a shift that two methods support, and its least error over a stroke's duration."""
+        ways, stroke = self.ways, self.stroke
+        starts, motion, classes = ways.get("starts"), ways.get("motion"), self.first
+        sharp = limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
+        known = starts is not None and self.estimate.uncertainty < sharp
+        if self.twice and contradicted(ways, stroke):
+            other = self.onsets if self.estimate is self.starts else self.starts
+            either = widened(ways["starts"], Estimate(*other[:2]))
+            return either, limits.MIN_ERROR_OF_SHIFT.value
+        if self.wide and known and starts and motion and consistent(starts, motion):
+            if abs(starts.shift - motion.shift) > motion.uncertainty:
+                starts = widened(starts, motion)
+            return starts, limits.MIN_ERROR_OF_SHIFT.value
+        if self.sharp_fit and motion:
+            first = classes
+            if known and starts:
+                least = limits.MAX_ERROR_OF_CONFIRMATION.value * starts.uncertainty
+                first = widened(starts, classes) if motion.uncertainty > least else starts
+            return combine(first, motion), limits.ERROR_WITHOUT_FIT.value
+        if starts and confirmed(starts, classes, stroke):
+            return widened(starts, classes), limits.ERROR_WITHOUT_FIT.value
+        return None
+
+
+def _require(condition: object) -> None:
+    """Raise unless the force determines the shift so far."""
+    if not condition:
+        raise _UndeterminedError
 
 
 def _doubt_about_starts(may: list[Candidate], stroke: float) -> str:
@@ -312,26 +372,3 @@ def _doubt(
         if abs(at - estimate.shift) > 0.5 * stroke and as_good:
             return f"the motion repeats: {estimate.shift:.4g} s and {at:.4g} s do equally well"
     return ""
-
-
-def _sharpened(
-    estimate: ShiftEstimate,
-    force_time: Array,
-    force: Array,
-    motion_time: Array,
-    velocity: Array,
-    fit: Classes,
-) -> ShiftEstimate:
-    """Refine an estimate by the starts of all fast strokes."""
-    onsets = refine_by_onsets(force_time, force, motion_time, velocity, estimate.shift, fit.period)
-    if onsets is None:
-        return estimate
-    apart = abs(onsets.shift - estimate.shift)
-    # the shift is known at the fast strokes; elsewhere the clock rates add uncertainty
-    middle = 0.5 * (motion_time[0] + motion_time[-1])
-    error = float(
-        np.hypot(onsets.uncertainty, limits.CLOCK_RATE_ERROR.value * (onsets.time - middle))
-    )
-    if apart > 3.0 * estimate.uncertainty:  # the methods disagree: neither is trusted more
-        error = max(error, apart)
-    return ShiftEstimate(onsets.shift, error, fit.ratio(onsets.shift))
