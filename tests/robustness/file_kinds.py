@@ -46,6 +46,7 @@ run with `--trust`).
 | binary numbers after a text header | `np.fromfile(path, "<i2", offset=n).reshape(-1, 3)` |
 | a map with positions along two sides | `pd.read_csv(path, index_col=0)` (index: y) |
 | a map as one column of heights | `np.loadtxt(path, skiprows=n).reshape(rows, columns)` |
+| heights in arrays with a mask, a mesh or a scale of their own | `np.load`, `h5py`; apply them |
 | column names listed in lines above the numbers | `pd.read_csv(path, skiprows=n, names=names)` |
 | abbreviations explained above; names in two rows | the same |
 | steps or specimens side by side | `pd.read_csv`, then `pd.concat` of the parts |

@@ -14,18 +14,8 @@ Z = np.round(np.random.default_rng(3).normal(size=(12, 20)).cumsum(1), 3)  # um
 X, Y = 1.5 * np.arange(20), 2.0 * np.arange(12)  # um
 
 
-def _struct(path):
-    units = {"unit_xy": "um", "unit_z": "nm", "sample": "disc 3"}
-    savemat(path, {"x": X, "y": Y, "Z": 1e3 * Z, "I": Z > 0, "info": units})
-
-
-def _mesh(path):
-    x, y = np.meshgrid(X, Y)
-    savemat(path, {"X": x, "Y": y, "Z": Z, "units": {"x": "um", "y": "um", "z": "um"}})
-
-
 def _pitch(path):
-    savemat(path, {"scan": {"topo": Z, "dx_um": 1.5, "dy_um": 2.0, "zunit": "um"}})
+    savemat(path, {"scan": {"topo_um": Z, "dx_um": 1.5, "dy_um": 2.0, "sample": "disc 3"}})
 
 
 def _counts(path):
@@ -36,24 +26,10 @@ def _counts(path):
             file.create_dataset(f"scan/{name}", data=1e-3 * values).attrs["units"] = "mm"
 
 
-def _scale_with_unit(path):
-    with h5py.File(path, "w") as file:
-        data = file.create_dataset("data", data=np.round(Z / 0.001).astype("i4"))
-        data.attrs.update(z_scale_nm=1.0, dx_um=1.5, dy_um=2.0)
-
-
-def _one_unit_for_both(path):
-    with h5py.File(path, "w") as file:
-        data = file.create_dataset("surface/height", data=(1e3 * Z).astype("f4"))
-        data.attrs.update(unit="nm", pixel_size_unit="um")
-        data.attrs.update(pixel_size_x=np.float32(1.5), pixel_size_y=np.float32(2.0))
-
-
-def _dutch(path):
+def _pitch_beside(path):
     with h5py.File(path, "w") as file:
         data = file.create_dataset("meting/hoogte", data=np.round((Z - 2.5) / 0.001).astype("i4"))
-        data.attrs.update(eenheid="um", scale_factor=0.001, add_offset=2.5)
-        data.attrs.update(pixelmaat=np.array([1.5, 1.5]), pixelmaat_eenheid="um")
+        data.attrs.update(eenheid="um", scale_factor=0.001, add_offset=2.5, dx_um=1.5, dy_um=2.0)
         file.create_dataset("meting/intensiteit", data=np.ones(Z.shape, "u1"))
 
 
@@ -62,12 +38,9 @@ def _archive(path):
 
 
 MAPS = {
-    "struct.mat": _struct,
-    "mesh.mat": _mesh,
     "pitch.mat": _pitch,
     "counts.h5": _counts,
-    "scale.h5": _scale_with_unit,
-    "pixels.h5": _one_unit_for_both,
+    "pitch.h5": _pitch_beside,
     "archive.npz": _archive,
 }
 
@@ -83,30 +56,22 @@ def test_a_map_is_told_by_the_names_of_its_arrays(tmp_path, name):
     assert any("map of 20 x 12 points" in line for line in file_lines(tmp_path / name))
 
 
-def test_a_pitch_for_both_axes_is_read_in_the_unit_beside_it(tmp_path):
-    _dutch(tmp_path / "meting.h5")
-    scan = read_scans(tmp_path / "meting.h5")
-    np.testing.assert_allclose(scan.height, 1e-6 * Z, atol=1e-12)
-    np.testing.assert_allclose(scan.x, 1e-6 * X, atol=1e-12)
-    np.testing.assert_allclose(scan.y, 1.5e-6 * np.arange(12), atol=1e-12)
-
-
 def test_what_an_attribute_says_to_be_no_height_is_none(tmp_path):
     counts = np.round(Z / 0.001).astype("i2")
     counts[3, 4:6] = -32768
     with h5py.File(tmp_path / "a.h5", "w") as file:
         data = file.create_dataset("height_um", data=counts)
-        data.attrs.update(scale=0.001, _FillValue=np.int16(-32768), dx_um=1.5, dy_um=2.0)
+        data.attrs.update(scale_factor=0.001, _FillValue=np.int16(-32768), dx_um=1.5, dy_um=2.0)
     scan = read_scans(tmp_path / "a.h5")
     assert int(np.isnan(scan.height).sum()) == 2
     assert "-32768 2 times, as '_FillValue' says" in scan.attrs["taken_for_missing"]
 
 
-def test_a_mask_beside_the_heights_tells_which_are_none(tmp_path):
-    valid = np.ones(Z.shape, bool)
-    valid[2, 3] = False
-    np.savez(tmp_path / "a.npz", z_um=Z, valid=valid, pixel_size_um=1.5)
-    assert np.isnan(read_scans(tmp_path / "a.npz").height.values[2, 3])
+@pytest.mark.parametrize("beside", [{"valid": Z > 0}, {"z_scale_nm": 0.5}, {"offset": 3.0}])
+def test_a_mask_or_a_scale_beside_the_heights_is_not_passed_over(tmp_path, beside):
+    np.savez(tmp_path / "a.npz", z_um=Z, pixel_size_um=1.5, **beside)
+    with pytest.raises(ReadError, match=f"'{next(iter(beside))}' may change or exclude heights"):
+        read_scans(tmp_path / "a.npz")
 
 
 def test_rows_over_one_x_are_profiles_and_a_unit_that_is_missing_is_all_that_is_asked(tmp_path):
