@@ -27,7 +27,7 @@ _CUT = 8  # bytes of an incomplete character at their end
 _HEAD_LINES = 200  # most lines above a matrix
 _MIN_COLUMNS = 8  # least columns of a matrix; fewer may be a table
 _MAX_OF_LINE = 24  # numbers of one profile in a line
-NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")  # a name of a word and a number
+_NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")  # a name of a word and a number
 _ROWS = 4  # rows of equal width needed to recognise a matrix
 _MARKS = frozenset(
     ("", "no data", *"bad nan -nan n/a na inf -inf null none invalid void nodata".split())
@@ -171,23 +171,25 @@ def _matrix(lines: list[str]) -> _Matrix | None:
             trial = _Matrix(lines[:start], [], delimiter, mark, columns)
             if columns < _ROWS or any(_numbers(line, trial) is None for line in first):
                 continue
-            if _numbers_its_points(trial):
+            names = _cells_of(_last_line(trial), delimiter)[1:]
+            if len(names) == columns - 1 and are_numbered(names):
                 return _without_numbers(_complete(lines[start:], trial))
             return None if _is_named(trial) else _complete(lines[start:], trial)
     return None
 
 
-def _numbers_its_points(matrix: _Matrix) -> bool:
-    """Whether the names above the columns are a word and a rising number.
+def are_numbered(names: Sequence[str]) -> bool:
+    """Whether names are one word with numbers that rise by one, as of the points of a map.
 
     File: an area of an Olympus OLS5000, "DataLine", "POS = 0" to "POS = 1023"
     (jarredclloyd/GeochemistryTools.jl).
+
+    >>> are_numbered(["POS = 0", "POS = 1", "POS = 2"]), are_numbered(["CH1", "CH3", "T"])
+    (True, False)
     """
-    names = _cells_of(_last_line(matrix), matrix.delimiter)[1:]
-    found = [match for name in names if (match := NUMBERED.fullmatch(name))]
-    across = np.diff([int(match[2]) for match in found])
-    alike = len(found) == len(names) == matrix.columns - 1 and len({m[1] for m in found}) == 1
-    return bool(alike and across.size and (across == 1).all())
+    found = [match for name in names if (match := _NUMBERED.fullmatch(name))]
+    alike = len(found) == len(names) > 1 and len({match[1] for match in found}) == 1
+    return alike and bool((np.diff([int(match[2]) for match in found]) == 1).all())
 
 
 def _without_numbers(matrix: _Matrix) -> _Matrix | None:

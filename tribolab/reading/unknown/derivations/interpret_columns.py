@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -61,7 +60,6 @@ from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_s
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Kind, Reason, Understood
 
-_NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")
 _MIN_NUMBERED = 24  # columns; fewer may be the channels of a logger
 _REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller unit
 
@@ -137,17 +135,14 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
 
 
 def _numbers_its_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
-    """Whether rows and columns are numbered as the points of a map are.
-
-    File: an area of an Olympus OLS5000, "POS = 0" to "POS = 1023"
-    (jarredclloyd/GeochemistryTools.jl).
-    """
-    labels = [_NUMBERED.fullmatch(column.label) for column in columns[1:]]
-    found = [match for match in labels if match]
-    if len(found) < max(_MIN_NUMBERED, len(labels)) or len({match[1] for match in found}) > 1:
+    """Whether rows and columns are numbered as the points of a map are."""
+    if len(columns) <= _MIN_NUMBERED:
         return False
-    across = np.diff([int(match[2]) for match in found])
-    return bool((across == 1).all() and (np.diff(numbers[:, 0]) == 1).all())
+    # late: starting stays quick
+    from tribolab.reading.scans.formats.matrix import are_numbered
+
+    counted = bool((np.diff(numbers[:, 0]) == 1).all())
+    return counted and are_numbered([column.label for column in columns[1:]])
 
 
 def _profile_of(
