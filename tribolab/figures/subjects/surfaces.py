@@ -108,8 +108,8 @@ def spectra(psds: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSp
         series += _spectrum(name, psd, colours[name])
     keys = (Key("measured"), Key("extrapolated", "dashed"))
     return FigureSpec(
-        title="Power spectra of the roughness",
-        note="Full: measured; dashed: extrapolated; shaded: 95 % band.",
+        title="Roughness power spectra",
+        note="Solid: measured; dashed: extrapolated; shaded: 95 % band.",
         panels=(
             Panel(
                 axis_of("wavenumber", log=True),

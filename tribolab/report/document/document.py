@@ -116,12 +116,16 @@ def _scan_verdict(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -
     scanned = [surface for surface in surfaces if surface.files]
     done = sum(surface.done for surface in scanned)
     suspect = sum(surface.quality == "suspect" for surface in scanned if surface.done)
+    failed = [surface.name for surface in scanned if set(_BAD) & set(surface.objections)]
     files = sum(len(surface.files) for surface in scanned)
     text = f"{many(files, 'scan')}, {done} of {many(len(scanned), 'surface')} usable"
     text += f" ({suspect} suspect)" * bool(suspect)
     if rejected:
         text += f"; scans of {', '.join(rejected)} rejected"
-    status = "complete" if done == len(scanned) and not rejected else "incomplete"
+    elif failed:
+        text += f"; a scan of {', '.join(failed)} failed"
+    sound = done == len(scanned) and not rejected and not failed
+    status = "complete" if sound else "incomplete"
     status = status if done else "nothing"
     return replace(verdict((), rejected), status=status, text=text, suspect=suspect)
 

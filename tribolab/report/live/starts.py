@@ -48,7 +48,7 @@ def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
             title="Static and kinetic friction vs. hold time",
             note="Filled: static friction at each restart ± U95; open: kinetic friction after it.",
             alt=f"Static and kinetic friction coefficients of {many(len(chosen), 'run')} over the "
-            "time of rest.",
+            "hold time.",
             panels=(Panel(Axis("hold time", "s", log=True), Axis("friction coefficient µ")),),
             series=tuple(series),
             width="whole",

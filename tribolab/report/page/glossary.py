@@ -137,6 +137,8 @@ HEADS: dict[str, str] = {
     "Sq (µm)": GLOSSARY["Sq"] + " Small: Sa.",
     "h rms (µm)": GLOSSARY["h rms"] + " Small: outer bounds of the extrapolated spectrum.",
     "Slope rms": GLOSSARY["Slope rms"],
+    "Measured rms slope": "Rms slope of all waves that the scans resolve. Shorter waves add to it: "
+    "see the surface's details.",
     "Roll-off (1/mm)": GLOSSARY["Roll-off"],
     "σ (MPa)": GLOSSARY["Shear stress σ"],
     "95 % interval (MPa)": GLOSSARY["95 % interval"],

@@ -155,12 +155,20 @@ def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
             cells = (
                 surface["name"],
                 *(_micrometres(row, name) for name in ("Ra", "Rq", "Rz")),
-                error_text(row["rms_slope"], None),
+                error_text(row["measured_rms_slope"], None),
                 error_text(row["hurst_exponent"], _u95(row["hurst_exponent_standard_error"])),
                 f"{row['scans']:g}",
             )
         rows.append(KeyRow(cells, surface["name"]))
-    heads = ("Surface", "Ra (µm)", "Rq (µm)", "Rz (µm)", "Slope rms", "Hurst exponent", "Scans")
+    heads = (
+        "Surface",
+        "Ra (µm)",
+        "Rq (µm)",
+        "Rz (µm)",
+        "Measured rms slope",
+        "Hurst exponent",
+        "Scans",
+    )
     return KeyTable(heads, tuple(rows))
 
 
