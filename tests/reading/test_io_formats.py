@@ -186,3 +186,13 @@ def test_columns_of_words_or_of_unequal_length_are_refused(tmp_path):
             file[name] = values[k:]
     with pytest.raises(ReadError, match="differ in length"):
         tl.read(tmp_path / "run.h5", dialect(tmp_path, "hdf5"))
+
+
+def test_a_matrix_of_an_archive_has_the_names_and_units_that_another_array_lists(tmp_path):
+    time = np.arange(600) / 100
+    names = ["time [s]", "Ft [N]", "Fn [N]", "v [mm/s]"]
+    data = np.column_stack([time, 3 + 0 * time, 10 + 0 * time, 5 + 0 * time])
+    np.savez(tmp_path / "a.npz", data=data, columns=np.array(names))
+    run = tl.read(tmp_path / "a.npz")
+    np.testing.assert_allclose(run.sliding_velocity, 5e-3)
+    np.testing.assert_allclose(run.friction_force, 3)
