@@ -7,9 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.reading.clocks import limits
-from tribolab.reading.clocks.starts import (
-    StartShift,
-)
+from tribolab.reading.clocks.starts import StartShift
 
 
 class Estimate(NamedTuple):

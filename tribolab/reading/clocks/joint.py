@@ -74,12 +74,7 @@ class Answer(NamedTuple):
 
 
 def shift_from_motion(
-    force_time: Array,
-    force: Array,
-    basis: Basis,
-    shift: float,
-    span: float,
-    least: float = 0.0,
+    force_time: Array, force: Array, basis: Basis, shift: float, span: float, least: float = 0.0
 ) -> JointShift | None:
     """Estimate the shift by a fit of the force by the motion, around a first estimate.
 

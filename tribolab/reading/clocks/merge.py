@@ -12,12 +12,7 @@ from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.shift import estimate_clock_shift
 from tribolab.reading.signals import Signals
 
-_STEPWISE = {
-    "set_speed",
-    "set_normal_force",
-    "step",
-    "cycle",
-}  # held constant between samples
+_STEPWISE = {"set_speed", "set_normal_force", "step", "cycle"}  # held constant between samples
 
 
 def merge(run: Signals, motion: Signals, clock_shift: float | None = None) -> Signals:
@@ -131,10 +126,7 @@ def _shift(
                 refused = f"by their dates one log ended {gap:.0f} s before the other began"
             if not refused:
                 return estimate.shift, "estimated", attrs
-            attrs |= {
-                "clock_shift_uncertainty_s": float("nan"),
-                "clock_shift_refused": refused,
-            }
+            attrs |= {"clock_shift_uncertainty_s": float("nan"), "clock_shift_refused": refused}
             return estimate.shift, "none", attrs
     return float(expected), "none", {"clock_shift_uncertainty_s": float("nan"), "clock_rate": 0.0}
 

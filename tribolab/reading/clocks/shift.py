@@ -40,12 +40,7 @@ from tribolab.reading.clocks.classes import Classes, coarse_shift, motion_classe
 from tribolab.reading.clocks.joint import shift_from_motion
 from tribolab.reading.clocks.motion import Motion, clean_motion
 from tribolab.reading.clocks.onset import refine_by_onsets
-from tribolab.reading.clocks.starts import (
-    Logs,
-    StartShift,
-    changes,
-    shift_from_starts,
-)
+from tribolab.reading.clocks.starts import Logs, StartShift, changes, shift_from_starts
 
 # N, m/s: larger values are damaged, and their squares would overflow
 _MAX_POSSIBLE_VALUE = 1e12

@@ -209,11 +209,7 @@ def read_groups(
 
 @isolated("netCDF4", "h5py", "xarray")
 def _read_groups(
-    path: Path,
-    groups: list[str | None],
-    *,
-    optional: bool,
-    only: Mapping[str, Collection[str]],
+    path: Path, groups: list[str | None], *, optional: bool, only: Mapping[str, Collection[str]]
 ) -> dict[str | None, xr.Dataset]:
     datasets = {}
     with _whole(path) as file:

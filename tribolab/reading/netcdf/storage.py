@@ -137,11 +137,7 @@ def storage(values: np.ndarray) -> Arguments:
     )
     if min(plain, shuffled) > _MAX_SHARE * sample.size:
         return layout
-    return layout | {
-        "zlib": True,
-        "complevel": _COMPRESSION,
-        "shuffle": shuffled < plain,
-    }
+    return layout | {"zlib": True, "complevel": _COMPRESSION, "shuffle": shuffled < plain}
 
 
 def _sample(values: np.ndarray) -> np.ndarray:

@@ -38,10 +38,7 @@ class Acceleration(NamedTuple):
 
 
 def acceleration(
-    signals: Mapping[str, np.ndarray],
-    time: np.ndarray,
-    accuracy: float,
-    widest: int = _WIDEST,
+    signals: Mapping[str, np.ndarray], time: np.ndarray, accuracy: float, widest: int = _WIDEST
 ) -> Acceleration | None:
     """Return the acceleration of a run, smoothed only as far as needed for an accuracy.
 

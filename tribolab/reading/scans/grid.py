@@ -64,10 +64,7 @@ def even(
         pitch, start = (float(c) for c in np.polyfit(count, x, 1))
         ideal = start + pitch * count
         unevenness = float(np.abs(ideal - x).max()) / pitch
-    attrs: dict[str, float | str] = {
-        "x_origin_m": float(ideal[0]),
-        "x_unevenness": unevenness,
-    }
+    attrs: dict[str, float | str] = {"x_origin_m": float(ideal[0]), "x_unevenness": unevenness}
     if unevenness <= _JITTER or unevenness * pitch <= _ROUNDED * _last_digit(x):
         return pitch, height, attrs
     steps = np.diff(x)

@@ -8,12 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.reading.lexicon.lexicon import (
-    key_pattern,
-    normalise_label,
-    part_pattern,
-    words_of,
-)
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern, words_of
 from tribolab.reading.scans.limits import SAME_RANGE
 from tribolab.reading.scans.unit_words import (
     AXES,

@@ -136,8 +136,7 @@ def _checked_scan(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
     )
     x = scan.x.values
     return scan.assign_attrs(
-        pitch_m=float(x[-1] - x[0]) / (x.size - 1),
-        length_m=float(x[-1] - x[0]),
+        pitch_m=float(x[-1] - x[0]) / (x.size - 1), length_m=float(x[-1] - x[0])
     )
 
 

@@ -36,10 +36,7 @@ _MAGIC = {
 }
 _JSON = re.compile(rb'(?:\xef\xbb\xbf)?\s*(?:\{\s*"[^"]*"\s*:|\[\s*[\[{])')
 _COMPATIBLE_FORMATS = {("netcdf", "hdf5"), ("text", "binary")}  # that a file may match, too
-_FOREIGN = {
-    b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",
-    b"%PDF": "a PDF",
-}
+_FOREIGN = {b"PK\x03\x04": "a zip or Office file; export a table as text (csv)", b"%PDF": "a PDF"}
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _WIDE_HEAD = 4096  # bytes sufficient to recognise wide characters
