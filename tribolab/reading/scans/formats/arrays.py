@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.lexicon.lexicon import keys_of, normalise_label, plain_words
 from tribolab.reading.raw.missing_marks import measurable, take_marks
-from tribolab.reading.scans.formats.named_arrays import NamedArray, NamedArrays, read_arrays
+from tribolab.reading.scans.formats.named_arrays import NamedArray, read_arrays
 from tribolab.reading.scans.formats.named_units import unit_remedy
 from tribolab.reading.scans.formats.profilometers import MissingUnitError
 from tribolab.reading.scans.grid import even
@@ -66,9 +66,9 @@ def read_scan_arrays(
     if heights is None:
         return None
     own = [NamedArray(k, np.asarray(v), {}) for k, v in heights.attrs.items() if _is_number(v)]
-    stored = stored._replace(arrays=[*stored.arrays, *own])
+    stored += own
     _refuse_unknown_changes(path, heights, stored)
-    x, y = (_positions(stored.arrays, axis) for axis in "xy")
+    x, y = (_positions(stored, axis) for axis in "xy")
     values = _oriented(path, heights, x, y)
     z, missing = _decoded(heights, values)
     along = _places(x, values.shape[-1], "x", values.shape, stored, x_unit)
@@ -119,14 +119,14 @@ def _words(name: str) -> frozenset[str]:
     return frozenset(normalise_label(word) for word in [*_WORD.findall(leaf), leaf])
 
 
-def _heights(path: Path, stored: NamedArrays) -> NamedArray | None:
+def _heights(path: Path, stored: list[NamedArray]) -> NamedArray | None:
     """Return the only array with a name of heights; a single line only with its positions."""
-    large = [a for a in stored.arrays if a.values.ndim in (1, 2) and a.values.size >= _MIN_POINTS]
+    large = [a for a in stored if a.values.ndim in (1, 2) and a.values.size >= _MIN_POINTS]
     if any(_words(a.name) & _OF_RUNS for a in large if a.values.ndim == 1):
         return None
     named = [a for a in large if _words(a.name) & _HEIGHTS]
     maps = [a for a in named if a.values.ndim == 2 and max(a.values.shape) >= _MIN_POINTS]
-    named = maps or [a for a in named if _positions(stored.arrays, "x") is not None]
+    named = maps or [a for a in named if _positions(stored, "x") is not None]
     if len(named) > 1:
         names = ", ".join(f"'{shown(a.name)}'" for a in named[:5])
         what = f"{len(named)} arrays may be the heights: {names}; save one alone"
@@ -134,9 +134,9 @@ def _heights(path: Path, stored: NamedArrays) -> NamedArray | None:
     return named[0] if named else None
 
 
-def _refuse_unknown_changes(path: Path, heights: NamedArray, stored: NamedArrays) -> None:
+def _refuse_unknown_changes(path: Path, heights: NamedArray, stored: list[NamedArray]) -> None:
     """Raise if a number or a mask may change the heights otherwise than by CF's attributes."""
-    for array in stored.arrays:
+    for array in stored:
         name = re.split(r"[./]", array.name)[-1]
         applies = array.values.ndim == 0 or array.values.shape == heights.values.shape
         if applies and name not in _CF and _CHANGES_HEIGHTS.search(name):
@@ -187,7 +187,7 @@ def _places(
     number: int,
     axis: str,
     shape: tuple[int, ...],
-    stored: NamedArrays,
+    stored: list[NamedArray],
     x_unit: str | None,
 ) -> np.ndarray | None:
     """Return positions along an axis [m], from an array or a single pitch; None if unknown."""
@@ -196,7 +196,7 @@ def _places(
         return None if unit is None else conversion(unit, "m")[0] * positions.values
     lines = [
         f"{_name_without_unit(a.name)} [{unit}]: {float(a.values):.12g}"
-        for a in stored.arrays
+        for a in stored
         if a.values.ndim == 0 and (unit := _unit_of(a) or x_unit)
     ]
     header = map_header(lines, (shape[0] if len(shape) == 2 else 1, shape[-1]), ".")

@@ -19,7 +19,6 @@ NPY = b"\x93NUMPY"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _NETCDF = (b"CDF\x01", b"CDF\x02")
 _MATLAB = (b"MATLAB 5.0", b"MATLAB 7.3")
-_MAX_TEXT = 500  # most characters of a text
 _MAX_ARRAYS = 200  # most arrays of a file
 
 
@@ -29,13 +28,6 @@ class NamedArray(NamedTuple):
     name: str
     values: np.ndarray
     attrs: Json
-
-
-class NamedArrays(NamedTuple):
-    """Arrays, and texts by name."""
-
-    arrays: list[NamedArray]
-    texts: dict[str, str]
 
 
 def is_npz(path: Path) -> bool:
@@ -54,8 +46,8 @@ def has_arrays(path: Path, head: bytes) -> bool:
     return head.startswith(marks) or (head.startswith(b"PK\x03\x04") and is_npz(path))
 
 
-def read_arrays(path: Path) -> NamedArrays:
-    """Read all arrays of numbers of a file, and its texts.
+def read_arrays(path: Path) -> list[NamedArray]:
+    """Read all arrays of numbers of a file.
 
     Raises
     ------
@@ -80,10 +72,10 @@ def read_arrays(path: Path) -> NamedArrays:
 
 
 @isolated()
-def _of_numpy(path: Path) -> NamedArrays:
+def _of_numpy(path: Path) -> list[NamedArray]:
     with path.open("rb") as file:
         alone = file.read(len(NPY)) == NPY
-    stored = NamedArrays([], {})
+    stored: list[NamedArray] = []
     loaded = np.load(path, allow_pickle=False)
     if alone:
         _take(stored, path.stem, loaded, {})
@@ -97,50 +89,46 @@ def _of_numpy(path: Path) -> NamedArrays:
     return stored
 
 
-def _of_mat(path: Path) -> NamedArrays:
-    variables = read_variables(path)
-    stored = NamedArrays([], {v.name: v.texts[0][:_MAX_TEXT] for v in variables if v.texts})
-    for variable in variables:
-        if variable.numbers is not None:
-            numbers = variable.numbers
+def _of_mat(path: Path) -> list[NamedArray]:
+    stored: list[NamedArray] = []
+    for variable in read_variables(path):
+        if (numbers := variable.numbers) is not None:
             _take(stored, variable.name, numbers.ravel() if 1 in numbers.shape else numbers, {})
     return stored
 
 
 @isolated("scipy.io")
-def _of_netcdf(path: Path) -> NamedArrays:
+def _of_netcdf(path: Path) -> list[NamedArray]:
     # imported late: SciPy loads slowly
     from scipy.io import netcdf_file
 
-    stored = NamedArrays([], {})
+    stored: list[NamedArray] = []
     with netcdf_file(path, "r", mmap=False, maskandscale=False) as file:
-        _add_attributes(stored, "", {k: plain(v) for k, v in vars(file)["_attributes"].items()})
+        _take(stored, "", np.empty(0), _plain_attributes(file))
         for name, variable in file.variables.items():
-            attrs = {k: plain(v) for k, v in vars(variable)["_attributes"].items()}
-            _take(stored, name, np.array(variable.data), attrs)
+            _take(stored, name, np.array(variable.data), _plain_attributes(variable))
     return stored
 
 
+def _plain_attributes(owner: object) -> Json:
+    return {key: plain(value) for key, value in vars(owner)["_attributes"].items()}
+
+
 @isolated("h5py")
-def _of_hdf5(path: Path) -> NamedArrays:
+def _of_hdf5(path: Path) -> list[NamedArray]:
     # imported late: h5py loads slowly
     import h5py
 
-    stored = NamedArrays([], {})
+    stored: list[NamedArray] = []
 
     def visit(name: str, item: object) -> None:
         attrs = {str(k): plain(v) for k, v in getattr(item, "attrs", {}).items()}
         if not isinstance(item, h5py.Dataset):
-            _add_attributes(stored, name, attrs)
+            _take(stored, name, np.empty(0), attrs)
             return
-        if item.shape is None or len(stored.arrays) >= _MAX_ARRAYS or item.dtype.names:
+        if item.shape is None or len(stored) >= _MAX_ARRAYS or item.dtype.kind not in "fiub":
             return
-        if attrs.get("MATLAB_class") == "char":
-            stored.texts[name] = "".join(map(chr, np.ravel(item[()])[:_MAX_TEXT].tolist()))
-        elif item.dtype.kind in "OSU":
-            if item.size == 1:
-                stored.texts[name] = str(plain(item[()]))[:_MAX_TEXT]
-        else:
+        if attrs.get("MATLAB_class") != "char":
             values = np.asarray(item[()])
             if "MATLAB_class" in attrs:  # columns in MATLAB are rows in HDF5
                 values = values.T
@@ -153,22 +141,13 @@ def _of_hdf5(path: Path) -> NamedArrays:
     return stored
 
 
-def _take(stored: NamedArrays, name: str, values: np.ndarray, attrs: Json) -> None:
-    if values.dtype.kind in "SU" and values.size == 1:
-        stored.texts[name] = str(plain(values))[:_MAX_TEXT]
-    elif values.dtype.kind in "fiub" and values.size:
+def _take(stored: list[NamedArray], name: str, values: np.ndarray, attrs: Json) -> None:
+    """Store an array of numbers with its attributes, or the numbers of a group like its members."""
+    if values.dtype.kind in "fiub" and values.size:
         own = np.squeeze(values) if values.ndim > 2 or values.size == 1 else values
-        stored.arrays.append(NamedArray(name, own, attrs))
-    for key, value in attrs.items():
-        if isinstance(value, str):
-            stored.texts[f"{name}.{key}"] = value
-
-
-def _add_attributes(stored: NamedArrays, name: str, attrs: Json) -> None:
-    """Store the attributes of a group like its members."""
-    for key, value in attrs.items():
-        full = f"{name}/{key}" if name else key
-        if isinstance(value, str):
-            stored.texts[full] = value[:_MAX_TEXT]
-        elif isinstance(value, int | float):
-            stored.arrays.append(NamedArray(full, np.asarray(value, dtype=float), {}))
+        stored.append(NamedArray(name, own, attrs))
+    elif not values.size:
+        for key, value in attrs.items():
+            if isinstance(value, int | float):
+                full = f"{name}/{key}" if name else key
+                stored.append(NamedArray(full, np.asarray(value, dtype=float), {}))
