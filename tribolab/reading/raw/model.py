@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,7 +28,6 @@ class Setting(NamedTuple):
     key: str
     text: str
     place: Place = Place()
-    source: Literal["attribute", "cells", "title"] = "attribute"
 
     @property
     def line(self) -> str:
@@ -95,8 +94,7 @@ class RawFile(NamedTuple):
             for column in table.columns
         ]
         settings = [*self.settings, *(s for table in self.tables for s in table.settings)]
-        kept = (setting for setting in settings if setting.source != "title")
-        return RawTable("", tuple(columns), tuple(kept))
+        return RawTable("", tuple(columns), tuple(settings))
 
 
 def text_of(settings: Iterable[Setting]) -> str:

@@ -41,8 +41,8 @@ class Groups:
         apart = {name for name in order if name and len(self._columns[name]) > 1}
         tables = []
         for name in order:
-            title = [Setting("", name, source="title"), *self._settings.get(name, [])]
-            tables.append(RawTable(name, tuple(self._columns[name]), tuple(title if name else [])))
+            settings = self._settings.get(name, []) if name else []
+            tables.append(RawTable(name, tuple(self._columns[name]), tuple(settings)))
         rest = (s for name, group in self._settings.items() if name not in apart for s in group)
         return RawFile(path, container, tuple(tables), tuple(rest))
 

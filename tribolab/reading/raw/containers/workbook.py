@@ -162,7 +162,7 @@ def _settings_above(rows: Cells) -> list[Setting]:
         cells = [" ".join(str(cell).split()) for cell in row[:_MAX_WIDE] if cell not in ("", None)]
         if cells and any(map(str.isalpha, "".join(cells))):
             text = "\t".join(cells)[:_MAX_SETTING]
-            settings.append(Setting("", text, Place(line=line), "cells"))
+            settings.append(Setting("", text, Place(line=line)))
     return settings
 
 
