@@ -143,6 +143,9 @@ def _bare(cell: str) -> tuple[str, str]:
     return cell, ""
 
 
+_SYMBOLS = ("Ep", "Epp", "Gp", "Gpp")
+
+
 def _concept(label: str) -> str:
     """Return what of a modulus a name stands for; "" if nothing.
 
@@ -153,10 +156,13 @@ def _concept(label: str) -> str:
         return ""
     text = label.translate(_PRIMES).replace("''", "pp").replace('"', "pp").replace("'", "p")
     words = text.replace("*", "star").split()
-    whole, without_symbol = (normalise_label(" ".join(part)) for part in (words, words[:-1]))
+    whole = normalise_label(" ".join(words))
+    first, hyphen, rest = " ".join(words).partition("-")
+    name = rest if hyphen and first in _SYMBOLS else ""
+    bare = {normalise_label(" ".join(part)) for part in (words, words[:-1], [name]) if part}
     for word in known_words("modulus"):
-        if whole in word.symbols or {whole, without_symbol} & names(word.quantity):
-            return word.quantity  # "Storage modulus E'" is its name and its symbol
+        if whole in word.symbols or bare & names(word.quantity):
+            return word.quantity  # "Storage modulus E'", Hitachi's "E'-Storage Modulus"
     return "temperature" if whole in ("t", "temp", "ts", *names("temperature")) else ""
 
 
