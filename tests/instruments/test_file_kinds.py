@@ -187,5 +187,5 @@ def test_a_person_is_asked_for_the_radius_of_the_track(tmp_path, monkeypatch):
 def test_columns_of_unknown_names_are_asked_for_where_no_friction_is_known(tmp_path):
     file = tmp_path / "unnamed.csv"
     file.write_text("Time [s],Weg [mm],Kanal 7 [mV]\n" + "\n".join(f"{n},{n},1" for n in range(30)))
-    with pytest.raises(ReadError, match="no column is known to hold it .or column 3 'Kanal 7"):
+    with pytest.raises(ReadError, match="no column is known to hold it: column 3 'Kanal 7"):
         tl.read(file)

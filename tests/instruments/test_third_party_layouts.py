@@ -152,7 +152,8 @@ def test_wear_on_a_disc_is_not_the_distance_slid(tmp_path: Path) -> None:
     lines = rows(T, 2.5, 0.1 * T, 190.0, T * 190 / 60, mark=";").replace("\n", ";\n")
     (tmp_path / "T11_0.1m-s_10N.csv").write_text(head + lines)
     run = tl.read(tmp_path / "T11_0.1m-s_10N.csv")
-    assert "position" not in run and run.attrs["speed_from"] == "none"
+    assert "position" not in run and run.attrs["speed_from"] == "set speed"
+    np.testing.assert_allclose(run.set_speed, 0.1)  # next to a steady rotation, from the name
     np.testing.assert_allclose(run.normal_force, 10.0)
 
 
