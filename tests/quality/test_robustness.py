@@ -263,7 +263,7 @@ def test_text_that_is_no_profile_is_refused_at_once(tmp_path):
     rows = ["1 2 3"] * 40_000
     rows[20_000] = "1 2"
     (tmp_path / "a.dat").write_text("\n".join(rows))
-    with pytest.raises(ReadError, match=r"a\.dat: neither a known dialect"):
+    with pytest.raises(ReadError, match=r"a\.dat: its format is not known"):
         read_scans(tmp_path / "a.dat")
     (tmp_path / "b.dat").write_text("a " * 100_000 + "\n1 2\n3 4\n")
     with pytest.raises(ReadError, match=r"b\.dat: line 1 has 200000 characters"):
@@ -385,7 +385,7 @@ def test_numbers_run_into_each_other_do_not_take_for_ever(shared_data, tmp_path)
     rows = (shared_data / "surfacetopography_MIT" / "xy-4.txt").read_text().splitlines()
     rows[8687] = "-1.7e308" + rows[8687]
     (tmp_path / "a.txt").write_text("\n".join(rows))
-    with pytest.raises(ReadError, match=r"a\.txt: neither a known dialect"):
+    with pytest.raises(ReadError, match=r"a\.txt: its format is not known"):
         read_scans(tmp_path / "a.txt", x_unit="mm", height_unit="um")
 
 

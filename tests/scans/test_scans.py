@@ -199,7 +199,7 @@ def test_different_pitches_are_named(tmp_path):
         (HEAD + "0.0,1\n0.001,2\n0.0005,3\n0.004,3\n", "goes back"),
         (HEAD + "0.0,1\n", "at least two points"),
         ("", "empty"),
-        ("no numbers here\n", "neither a known dialect"),
+        ("no numbers here\n", "its format is not known"),
     ],
 )
 def test_bad_profiles_say_what_is_wrong(tmp_path, content, words):
