@@ -201,7 +201,7 @@ def _node(tree: ast.expr, text: str) -> Node:
             return Node("number", operand=_quantity(said, text))
         case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
             return Node("number", operand=Operand(float(number), ()))
-    raise _wrong(text, f"'{shown(_written_as(tree, text), 20)}' is none of them")
+    raise _wrong(text, f"'{shown(_written_as(tree, text), 20)}' is not allowed")
 
 
 def _written_as(tree: ast.expr, text: str) -> str:
