@@ -103,6 +103,15 @@ def test_a_sentence_that_multiplies_is_asked_about(said, tmp_path):
         tl.read(tmp_path / "run.csv")
 
 
+@pytest.mark.parametrize(("name", "start"), [("a_zero_no_offset", 0.0), ("c_epoch_offset", 1.7e9)])
+def test_declared_records_are_read_to_their_last_digit(name, start, shared_data):
+    run = tl.read(shared_data / f"cases/{name}.bin")
+    assert run.sizes["time"] == 20000 and run.attrs["time_origin_s"] == start
+    np.testing.assert_allclose(np.diff(run.time), 1e-3, atol=3e-7)
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    assert float(abs(found.friction_coefficient).mean()) == pytest.approx(0.25, abs=0.06)
+
+
 @pytest.mark.parametrize("said", ["Image 512 x 512", "Friction test, 100 double strokes"])
 def test_a_size_or_a_count_multiplies_nothing(said, tmp_path):
     rows = "\n".join(f"{0.1 * n:.1f},0.3,1,2" for n in range(50))

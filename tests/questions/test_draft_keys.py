@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import h5py
@@ -25,6 +26,28 @@ def checked(run):
     np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-9)
     np.testing.assert_allclose(np.abs(run.sliding_velocity), SPEED, rtol=1e-6)
     np.testing.assert_allclose(run.normal_force, 20.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "value", "radius", "load"),
+    [
+        ("namn", "enhet", "värde", "spårradie", "normalkraft"),
+        ("naam", "eenheid", "waarde", "spoorstraal", "normaalkracht"),
+        ("nombre", "unidad", "valor", "radio de pista", "carga normal"),
+        ("name", "einheit", "wert", "Spurradius", "Normalkraft"),
+    ],
+)
+def test_json_says_names_and_units_in_its_own_language(
+    tmp_path: Path, name: str, unit: str, value: str, radius: str, load: str
+) -> None:
+    channels = (("Time", "s", TIME), ("Rotation", "rpm", np.full(800, 60.0)))
+    channels += (("Friction force", "N", FRICTION),)
+    said = {
+        "settings": {radius: {value: 30, unit: "mm"}, load: {value: 20, unit: "N"}},
+        "data": [{name: n, unit: u, "data": v.tolist()} for n, u, v in channels],
+    }
+    (tmp_path / "a.json").write_text(json.dumps(said, ensure_ascii=False), "utf-8")
+    checked(tl.read(tmp_path / "a.json"))
 
 
 @pytest.mark.parametrize("key", ["eenheid", "enhet", "unidad", "单位"])

@@ -1,5 +1,6 @@
 """Arrangements of text that other labs write: read with their names, units and settings."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,59 @@ def both_ways(path):
     return tl.read(path), tl.read(path, instrument=kept)
 
 
+def columnar():
+    return {"t": TIME.tolist(), "Ft": FORCE.tolist(), "Fn": LOAD.tolist(), "v": [5.0] * TIME.size}
+
+
+UNITS = {"t": "s", "Ft": "N", "Fn": "N", "v": "mm/s"}
+
+
+JSON = {
+    "split": lambda: {
+        "columns": [f"{n} [{u}]" for n, u in UNITS.items()],
+        "data": [list(row) for row in zip(*columnar().values(), strict=True)],
+    },
+    "records": lambda: [
+        {
+            f"{n}_{u.replace('/', '_')}": value
+            for (n, u), value in zip(UNITS.items(), row, strict=True)
+        }
+        for row in zip(*columnar().values(), strict=True)
+    ],
+    "channels": lambda: {
+        "test": {"radius": {"value": 4, "unit": "cm"}},
+        "channels": [{"name": n, "unit": UNITS[n], "samples": v} for n, v in columnar().items()],
+    },
+    "counted": lambda: {
+        f"{n} [{UNITS[n]}]": {str(k): value for k, value in enumerate(v)}
+        for n, v in columnar().items()
+    },
+}
+
+
+@pytest.mark.parametrize("form", JSON)
+@pytest.mark.parametrize("indent", [None, 1])
+def test_columns_in_json_are_a_table(tmp_path, form, indent):
+    (tmp_path / "a.json").write_text(json.dumps(JSON[form](), indent=indent))
+    for run in both_ways(tmp_path / "a.json"):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        np.testing.assert_allclose(run.normal_force, LOAD)
+        np.testing.assert_allclose(run.sliding_velocity, 5e-3)
+        np.testing.assert_allclose(np.diff(run.time), 0.1, rtol=1e-6)
+
+
+def test_settings_in_objects_of_json_are_found(tmp_path):
+    said = {"geometry": {"contact_radius_mm": 15.0}, "load": {"value": 3, "unit": "N"}}
+    data = {"t": TIME.tolist(), "M": (1000 * FORCE).tolist(), "rpm": [30.0] * TIME.size}
+    units = {"t": "s", "M": "uN.m", "rpm": "1/min"}
+    document = {"meta": {"units": units, **said}, "data": data}
+    (tmp_path / "a.json").write_text(json.dumps(document))
+    run = tl.read(tmp_path / "a.json")
+    np.testing.assert_allclose(run.friction_force, FORCE * 1e-3 / 0.015)
+    np.testing.assert_allclose(run.sliding_velocity, 0.015 * np.pi)
+    np.testing.assert_allclose(run.normal_force, 3)
+
+
 SIGNALS = {"Time": "s", "Friction force": "N", "Normal force": "N", "Speed": "mm/s"}
 COLUMNS = (TIME, FORCE, LOAD, 0 * TIME + 5)
 
@@ -41,6 +95,41 @@ def test_wide_letters_without_a_mark_are_text(tmp_path, encoding):
     rows = ("\t".join(map(str, row)).replace(".", ",") for row in zip(*COLUMNS, strict=True))
     (tmp_path / "a.txt").write_bytes("\r\n".join([head, *rows, ""]).encode(encoding))
     check(tmp_path / "a.txt")
+
+
+RECORDS = """CAPTURE V1.4
+header_bytes=512
+{kind}
+channels=3
+layout={layout}
+sample_rate_hz=100
+{formula}
+ch1=FRICTION_FORCE unit=N scale=0.001 bias={bias}
+ch2=NORMAL_FORCE unit=N scale=0.01 bias=0
+ch3=ENCODER unit=counts (1000 per turn, wraps to 0) scale=1 bias=0
+track_radius_mm=20
+end_header
+"""
+
+
+@pytest.mark.parametrize("kind", ["data_type=int16\nbyte_order=little", "dtype=>i2"])
+@pytest.mark.parametrize("layout", ["interleaved", "sequential"])
+@pytest.mark.parametrize("inside", [True, False])
+def test_a_header_of_text_declares_the_binary_numbers_behind_it(tmp_path, kind, layout, inside):
+    turns = 0.03 * np.arange(1000)
+    raw = np.column_stack([np.full(1000, 1500), np.full(1000, 2000), (1000 * turns) % 1000 // 1])
+    raw = raw if layout == "interleaved" else raw.T
+    formula = "; physical = (raw - bias)*scale" if inside else "; physical = raw*scale + bias"
+    bias = 500 if inside else -0.5
+    head = RECORDS.format(kind=kind, layout=layout, formula=formula, bias=bias).encode()
+    numbers = np.ascontiguousarray(raw.astype(">i2" if ">" in kind else "<i2")).tobytes()
+    (tmp_path / "a.bin").write_bytes(head.ljust(512, b"\0") + numbers)
+    for run in both_ways(tmp_path / "a.bin"):
+        np.testing.assert_allclose(run.friction_force, 1.0)
+        np.testing.assert_allclose(run.normal_force, 20)
+        np.testing.assert_allclose(np.diff(run.time), 0.01, rtol=1e-6)
+        way = 0.02 * 2 * np.pi * turns
+        np.testing.assert_allclose(run.position, way, atol=0.02 * 2 * np.pi * 2e-3)
 
 
 def test_a_load_that_steps_at_one_speed_parts_the_segment(tmp_path):

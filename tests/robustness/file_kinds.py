@@ -42,8 +42,6 @@ run with `--trust`).
 |---|---|
 | each number after its name (`t:1.5 F:2.0`) | the example below |
 | one JSON record per line | `pd.read_json(path, lines=True)` |
-| columns in JSON | `pd.DataFrame(json.load(open(path))["data"])` |
-| binary numbers after a text header | `np.fromfile(path, "<i2", offset=n).reshape(-1, 3)` |
 | a map with positions along two sides | `pd.read_csv(path, index_col=0)` (index: y) |
 | a map as one column of heights | `np.loadtxt(path, skiprows=n).reshape(rows, columns)` |
 | heights in arrays with a mask, a mesh or a scale of their own | `np.load`, `h5py`; apply them |

@@ -58,11 +58,21 @@ class Dialect(Strict):
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     title: str = Field(description="name of the instrument, for people")
     format: Literal[
-        "text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "npz", "binary"
+        "text",
+        "mat",
+        "tdms",
+        "hdf5",
+        "parquet",
+        "feather",
+        "excel",
+        "npz",
+        "json",
+        "declared records",
+        "binary",
     ] = Field(
         "text",
-        description="'hdf5' includes MATLAB 7.3; 'npz' is a NumPy archive; files of any format may "
-        "be compressed (gz, zip)",
+        description="'hdf5' includes MATLAB 7.3; 'npz' is a NumPy archive; 'declared records' are "
+        "binary numbers after a text header; files of any format may be compressed (gz, zip)",
     )
     from_file: bool = Field(
         True,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from tribolab.core.errors import ReadError
 from tribolab.reading import cures
 from tribolab.reading.file_patterns import why_missing
+from tribolab.reading.raw.containers.declared_records import declares_records
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
@@ -35,15 +36,17 @@ _MAGIC = {
     b"\xd0\xcf\x11\xe0": "excel",
 }
 _JSON = re.compile(rb'(?:\xef\xbb\xbf)?\s*(?:\{\s*"[^"]*"\s*:|\[\s*[\[{])')
-_COMPATIBLE_FORMATS = {("netcdf", "hdf5"), ("text", "binary")}  # that a file may match, too
+_COMPATIBLE_FORMATS = {
+    ("netcdf", "hdf5"),
+    ("text", "binary"),
+    ("text", "json"),
+    ("text", "declared records"),
+}  # other formats that a file may match
 _FOREIGN = {b"PK\x03\x04": "a zip or Office file; export a table as text (csv)", b"%PDF": "a PDF"}
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _WIDE_HEAD = 4096  # bytes sufficient to recognise wide characters
 _MIN_BYTES = 64
-_INSTEAD_OF_JSON = (
-    "write its columns as a table, in Python pandas.DataFrame(json.load(open(path))).to_csv(...)"
-)
 
 
 class File(NamedTuple):
@@ -53,6 +56,18 @@ class File(NamedTuple):
     format: str
     size: int
     head: bytes
+
+    @property
+    def container(self) -> str:
+        """Format with named columns: that of the file, JSON, or binary records; "" for text lines.
+
+        Binary records follow a text that declares them.
+        """
+        if self.format != "text":
+            return self.format
+        if _is_json(self.head):
+            return "json"
+        return "declared records" if b"\0" in self.head and not wide_encoding(self.head) else ""
 
 
 def peek(path: str | Path, *, binary: bool = False) -> File:
@@ -93,7 +108,7 @@ def _seen(path: Path, binary: bool, _: Identity | None) -> File:
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
     found = File(path, _format(path, head, binary=binary), size, head)
-    if found.format == "text":
+    if found.format == "text" and not found.container:
         refuse_endless(path, head, size)
     if found.format in ("hdf5", "netcdf"):
         try:
@@ -145,6 +160,9 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     )
 
 
+_MAX_JSON = 1 << 28  # bytes; it is read as a whole
+
+
 def _is_json(head: bytes) -> bool:
     """Whether a file is JSON as a whole, not a table below a line of JSON."""
     if not _JSON.match(head):
@@ -174,6 +192,8 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
                 f"this is {name}", where=path, cure=cures.PERHAPS_PROFILE if profile else ""
             )
     if b"\0" in head and not wide_encoding(head):
+        if declares_records(head):
+            return "text"
         if installed_readers() and answers(head):
             return "python"
         raise ReadError(
@@ -181,9 +201,29 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             where=path,
             cure=cures.PERHAPS_PROFILE,
         )
-    if _is_json(head):
-        raise ReadError("this is JSON, which is not read", where=path, cure=_INSTEAD_OF_JSON)
+    if _is_json(head) and not _has_columns(path):
+        cure = "write its columns as a table, e.g. in Python pandas.DataFrame(...).to_csv(...)"
+        raise ReadError("this is JSON, of which no table is read", where=path, cure=cure)
     return "text"
+
+
+def _has_columns(path: Path) -> bool:
+    try:
+        state = path.stat()
+    except OSError:
+        return False
+    return state.st_size <= _MAX_JSON and _has_tables(path, state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=16)  # a file is inspected more than once
+def _has_tables(path: Path, size: int, changed: int) -> bool:
+    # imported late for a quick start
+    from tribolab.reading.raw.containers.json_tables import has_tables
+
+    try:
+        return has_tables(path.read_text("utf-8-sig"))
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 _MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)

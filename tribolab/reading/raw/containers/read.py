@@ -18,6 +18,8 @@ _READERS = {
     "npz": ("npz", "read_npz"),
     "parquet": ("arrow", "read_arrow"),
     "feather": ("arrow", "read_arrow"),
+    "json": ("json_tables", "read_json"),
+    "declared records": ("declared_records", "read_declared_records"),
 }
 CONTAINERS = frozenset(_READERS)
 

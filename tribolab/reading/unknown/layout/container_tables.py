@@ -42,11 +42,11 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
         If it has no columns of numbers of equal length, or is damaged.
     """
     try:
-        held, raw = _workbook(file) if file.format == "excel" else _container(file)
+        held, raw = _workbook(file) if file.container == "excel" else _container(file)
     except (ReadError, ImportError):
         raise
     except Exception as error:  # each of these libraries reports damage in its own way
-        raise ReadError(f"this {file.format} file cannot be read", where=file.path) from error
+        raise ReadError(f"this {file.container} file cannot be read", where=file.path) from error
     placed, settings, clocks, guesses = _whole(raw)
     text = text_of(([clocks.setting] if clocks else []) + settings)
     every = [_held(column, table, held.form) for table, column in placed]
@@ -66,7 +66,7 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
 
 def _container(file: File) -> tuple[Held, RawFile]:
     """Return where columns are in a container, and its tables."""
-    form = {"netcdf": "hdf5"}.get(file.format, file.format)  # both begin alike
+    form = {"netcdf": "hdf5"}.get(file.container, file.container)  # both begin alike
     return Held(form), _without_units(read_container(file.path, form))
 
 

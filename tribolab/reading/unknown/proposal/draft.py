@@ -106,7 +106,7 @@ def _drafted(file: File, name: str) -> Draft:
 
 
 def _understood(file: File) -> tuple[Layout, Understood]:
-    if file.format == "text":
+    if not file.container:
         layout = find_layout(file)
         return layout, understand(layout)
     # late: starting stays quick
@@ -116,7 +116,7 @@ def _understood(file: File) -> tuple[Layout, Understood]:
         layout_of_columns,
     )
 
-    if file.format not in DRAFTED_FROM:
+    if file.container not in DRAFTED_FROM:
         raise ReadError(
             f"this is {file.format}; a dialect can be drafted from text and from columns with "
             "names only, for other formats follow an example in raw_data_schema/instruments",

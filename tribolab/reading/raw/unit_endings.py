@@ -1,0 +1,72 @@
+"""Units as suffixes of keys: "contact_radius_mm"."""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.core.errors import TribolabError
+from tribolab.units.conversion import conversion
+from tribolab.units.spellings import MICRO
+
+# SI units of recorded quantities
+_MEASURED = (
+    "s",
+    "m",
+    "N",
+    "m/s",
+    "Pa",
+    "K",
+    "V",
+    "1/s",
+    "rad/s",
+    "rad",
+    "N m",
+    "m/s**2",
+    "ohm",
+    "A",
+)
+_WEIGHTS = frozenset(("g", "kg", "gf", "kgf", "kp", "p"))
+_LOWER_CASE_UNITS = {
+    "hz": "Hz",
+    "khz": "kHz",
+    "n": "N",
+    "mn": "mN",
+    "kn": "kN",
+}  # lower-case units in keys
+_NO_UNIT = frozenset(("percent", "%", "-", "1"))
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of a recorded quantity.
+
+    >>> is_unit("mm/s"), is_unit("degC"), is_unit("raw"), is_unit("3")
+    (True, True, False, False)
+    """
+    if text in _WEIGHTS or text.lower() in _NO_UNIT:
+        return True
+    if not re.fullmatch(rf"[^\W\d_{MICRO}°]*[\w/*^.·°%²³-]*", text) or text.isdigit():
+        return False
+    for unit in _MEASURED:
+        try:
+            conversion(text, unit)
+        except TribolabError:
+            continue
+        return True
+    return False
+
+
+def without_unit(key: str) -> tuple[str, str]:
+    """Split a key into name and unit suffix.
+
+    >>> without_unit("contact_radius_mm"), without_unit("speed_mm_s"), without_unit("stroke")
+    (('contact_radius', 'mm'), ('speed', 'mm/s'), ('stroke', ''))
+    >>> without_unit("sample_rate_hz")
+    ('sample_rate', 'Hz')
+    """
+    words = key.split("_")
+    for count, mark in ((2, "/"), (1, "")):
+        unit = mark.join(words[-count:])
+        unit = _LOWER_CASE_UNITS.get(unit, unit)
+        if len(words) > count and is_unit(unit):
+            return "_".join(words[:-count]), unit
+    return key, ""
