@@ -7,8 +7,9 @@ from pathlib import Path
 import xarray as xr
 
 from tribolab.core.errors import ReadError
+from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook, refuse_cut_short
-from tribolab.reading.raw.unpacked import ZIP, of_the_file, unpacked
+from tribolab.reading.raw.unpacked import ZIP, is_workbook, of_the_file, unpacked
 from tribolab.reading.scans.formats.arrays import read_scan_arrays
 from tribolab.reading.scans.formats.gauges import is_gauge, read_gauge
 from tribolab.reading.scans.formats.matrix import read_matrix
@@ -99,6 +100,8 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
         return read_nanoscope(path)
     if b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return _read_text(path, x_unit, height_unit)
+    if head.startswith(ZIP) and is_workbook(path):
+        sheets_of(path)  # names the package that is missing
     return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)
 
 
