@@ -220,7 +220,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     points_found: tuple[Row, ...] = ()
     if (undecided := _curve_as_found(task)) is not None:
         points_found = plain_rows(curve_table(undecided))
-        if points_found == points:  # e.g. a note
+        if points_found == points:  # the decision is only a note, for example
             points_found = ()
         else:
             groups[_AS_FOUND] = undecided

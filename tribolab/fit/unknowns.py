@@ -79,7 +79,7 @@ def merge_old_options(
         field = name.removesuffix("_range")
         if field in _NAMES and (name != field or field in ("shear_stress_error", "measured_to")):
             found[field] = left.pop(name)
-    if "outlet" in left:  # None meant: vented or flooded, unknown which
+    if "outlet" in left:  # None means that the outlet may be vented or flooded
         found["outlet"] = left["outlet"] is None
         if left["outlet"] is None:
             del left["outlet"]

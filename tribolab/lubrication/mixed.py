@@ -164,7 +164,7 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     contact, yielding = _contact(problem, u)
     total = state.pressure
     fluid = total - contact
-    # flux J = drive - T (rise of p) from centre to centre; outside the domain p = 0
+    # flux between cells = entrainment - conductance x pressure difference; p = 0 outside
     flow = flow_between(mesh.between, problem.moving(couette), problem.gap, couette, u)
     conductance, entrained = flow.conductance, flow.drive
     rise = np.empty_like(conductance)

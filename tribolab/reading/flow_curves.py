@@ -25,7 +25,7 @@ class FlowCurve(NamedTuple):
 
 
 def read_flow_curve(path: str | Path) -> FlowCurve:
-    r"""Read the viscosity over the shear rate, in whatever way rheometers write them.
+    r"""Read viscosity against shear rate from any export of a rheometer.
 
     Parameters
     ----------

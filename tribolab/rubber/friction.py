@@ -198,7 +198,7 @@ def solve_hysteresis(
 def _heating(
     friction: np.ndarray, area: np.ndarray, speed: xr.DataArray, over: xr.DataArray, psd: xr.Dataset
 ) -> np.ndarray:
-    """Return the temperature rise [K] of contact spots by the loss (pressures, speed)."""
+    """Return the temperature rise [K] of contact spots due to hysteresis (pressures, speed)."""
     q, spectrum = spectrum_arrays(psd)
     first, second = (cumulative(q, spectrum, power)[-1] for power in (1, 2))
     if first == 0:

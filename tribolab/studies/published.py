@@ -59,7 +59,7 @@ class Published:
 
     @property
     def factor(self) -> float:
-        """Printed unit in SI."""
+        """SI value of the printed unit."""
         return _SI[self.unit]
 
     @property

@@ -173,7 +173,7 @@ def _ask_for_motion(draft: Draft, ask: Ask, say: Say) -> Draft:
 def _ask_for_lengths(
     draft: Draft, layout: Layout, understood: Understood, ask: Ask, say: Say
 ) -> Draft:
-    """Ask for the radius of the track, unless the file states it, and for a stated zero."""
+    """Ask for a missing track radius, and whether a stated zero was already subtracted."""
     follows = what_follows(layout, understood)
     lacks = {lack.member for lack in lacking(understood, follows)}
     if follows.zero_in_doubt is not None:

@@ -1,4 +1,4 @@
-"""Surfaces in their contacts: what a curve, its model and the report call a surface."""
+"""Pairs of a surface and a contact, which curves, models and the report call a surface."""
 
 from __future__ import annotations
 

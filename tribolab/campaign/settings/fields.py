@@ -55,7 +55,7 @@ class Si:
             "type": "string",
             "pattern": _NUMBER_WITH_UNIT,
             "examples": [self.example],
-            "unit": self.unit,  # no word of JSON Schema: our own, as in run.schema.json
+            "unit": self.unit,  # our extension of JSON Schema, as in run.schema.json
         }
 
     def _converted(self, value: Any, info: core_schema.ValidationInfo[Any]) -> float:

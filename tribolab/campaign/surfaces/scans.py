@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tribolab.qc.findings import FindingRow, Findings
 
 _FAILED = ("fail", "error")
-# shares of the mean square slope from extrapolation above which it is reported
+# extrapolated share of the mean square slope above which it is noted, or suspect
 _NOTED, _SUSPECT = 0.5, 0.8
 # ratio of Pq with and without a circle: in this range the circle may be waviness
 _CIRCLE_COUNTS, _CIRCLE_CLEAR = 1.02, 2.0

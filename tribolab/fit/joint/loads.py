@@ -27,7 +27,7 @@ from tribolab.units.stamping import stamp
 
 _INTERVAL_ENDS = 0.025, 0.975
 _RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # 2.5 % and 97.5 % quantiles over the scale
-_ROUNDING_OF_INTERVAL = 1e-9  # of an interval
+_ROUNDING_OF_INTERVAL = 1e-9  # relative to the length of an interval
 _DRAWN_SPEEDS = 61  # speeds of a plotted curve
 
 
@@ -174,7 +174,7 @@ def _marginals(
 
 
 def _names_of(parameters: Parameters, surfaces: Sequence[str]) -> list[tuple[str, str, bool]]:
-    """Return name, surface and whether it is a logarithm, for each element of the vector."""
+    """Return name and surface of each fitted parameter, and whether it is a logarithm."""
     names = [("", "", False)] * parameters.mean.size
     for places, name, logarithmic in (
         (parameters.stress, "shear_stress", True),

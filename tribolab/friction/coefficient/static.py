@@ -191,7 +191,7 @@ def _starts(
 
 
 def _starts_slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
-    """Return whether a segment begins a record or specimen, and still without friction."""
+    """Return whether a segment begins a record or specimen with a force still near zero."""
     signal = friction_signal(run)
     time, values = run.variables["time"].values, run.variables[signal].values
     begins = np.append(time[:1], begins_of_specimens(run))

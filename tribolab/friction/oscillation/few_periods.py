@@ -87,7 +87,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
 
 
 def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
-    """Remove the dominant slow sine, and return its swing; None if it is small.
+    """Remove the dominant slow sine; return also its peak-to-peak amplitude. None if small.
 
     Next to a slow oscillation the spectrum cannot distinguish a faster one from slow drift.
 

@@ -65,7 +65,7 @@ class RigWave(NamedTuple):
 
 
 class RigMotion(NamedTuple):
-    """Rotation rate [rad/s] (time) or reciprocation of a rig, and the name of its period."""
+    """Angular frequency [rad/s] of a rotating or reciprocating rig, and the name of its period."""
 
     rate: np.ndarray | float
     what: str

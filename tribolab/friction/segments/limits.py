@@ -12,7 +12,9 @@ DETECTION = {  # of constant speed: defaults of `find_segments`
     "max_gap": Limit(
         0.0, "s", "pause between two samples of a segment; 0: a twentieth of the segment"
     ),
-    "rest_speed": Limit(0.0, "m/s", "speed of the slider at rest; 0: 1e-5 of the highest speed"),
+    "rest_speed": Limit(
+        0.0, "m/s", "speed of the slider at rest; 0: from the noise and the highest speed"
+    ),
 }
 MIN_SHARE_OF_SPEED = Limit(
     0.5, "1", "a position that moves at less than half of the recorded speed stands still"

@@ -228,7 +228,7 @@ def _levels(
 
 
 def _turn(place: np.ndarray, at: float) -> list[np.ndarray]:
-    """Return the basis of two lines that meet."""
+    """Return basis functions of two straight lines joined at a reversal."""
     return [np.ones(place.size), place, np.abs(place - at)]
 
 

@@ -64,7 +64,7 @@ def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[
 
 
 def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    # friction; steps of shear stress of a rheometer have a shear rate instead of a speed
+    # only segments of friction: shear steps of a rheometer have a shear rate, not a speed
     unknown = np.isnan(subject.friction["sliding_speed"].values)
     if unlike := subject.about.strokes_unlike_s:
         often = subject.run.attrs["stroke_frequency_Hz"]

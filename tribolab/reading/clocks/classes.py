@@ -176,7 +176,7 @@ def _power_of_two(least: int) -> int:
 
 
 class Classes:
-    """Explained sum of squares at any shift, from cumulative sums of the force."""
+    """Sum of squares of the force that classes of motion explain, at any clock shift."""
 
     def __init__(
         self, force_time: Array, force: Array, motion_time: Array, classes: NDArray[np.int64]

@@ -226,7 +226,7 @@ class _Search:
         self.first, self.top = row, float(self.time[row])
 
     def _interval(self, row: int) -> float:
-        """Return the usual interval of the rows before a fall."""
+        """Return the usual time step before a backward jump of the clock."""
         before = self.steps[max(self.first, row - 10) : row - 1]
         before = before[before > 0]
         return float(median(before)) if before.size else self.usual

@@ -30,7 +30,7 @@ _FITTED_SAMPLES = 2000  # force samples used in one fit
 _ROUNDING = 1e-14  # error of a difference of products, over the products
 _CANCELLATION = 1e-6  # relative size below which a difference of sums is computed directly
 _DRIFT_FUNCTIONS = 8  # most hat functions of time
-_POWER_RANGE = 2.0, 8.0  # range of the exponent that weights models by their unexplained share
+_POWER_RANGE = 2.0, 8.0  # exponent that weights models by their unexplained variance
 _POWER_PER_RESIDUAL = 0.01  # exponent per independent residual
 # prior probability that the force leads; all slack values share the rest equally
 _PRIOR_FORCE_LEADS = 0.5

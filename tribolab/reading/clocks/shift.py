@@ -213,7 +213,7 @@ class _Search:
         return float(0.5 * (self.motion_time[0] + self.motion_time[-1]))
 
     def by_motion(self) -> None:
-        """Fit the force by all effects of the motion, near the estimate by the starts."""
+        """Fit the force with all effects of motion, close to the shift found from the starts."""
         estimate = self.estimate
         durations = np.diff(self.motion_time[changes(self.way)])
         self.stroke = float(median(durations[durations > 0.1 * durations.max()]))  # or rest

@@ -188,7 +188,7 @@ def _written(dimension: Dimension) -> str:
 
 
 def _node(tree: ast.expr, text: str) -> Node:
-    """Return a part of a formula; raise for anything else that Python may write."""
+    """Return a part of a formula; raise for any other Python syntax."""
     match tree:
         case ast.BinOp(op=op) if type(op) in _SIGNS:
             sides = (_node(tree.left, text), _node(tree.right, text))

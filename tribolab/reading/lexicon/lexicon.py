@@ -32,7 +32,7 @@ _NO_LANGUAGE = ("of", "symbols", "stems", "vague")
 
 
 class Word(NamedTuple):
-    """A concept and what it is called; all but `terms` are written as `normalise_label` does.
+    """A concept and its names, all but `terms` normalised by `normalise_label`.
 
     Symbols are whole names; of two for one concept the first is the better. Stems may stand
     anywhere in a name. A vague stem is shared with other concepts: it is always a guess.

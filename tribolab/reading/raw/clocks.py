@@ -15,7 +15,7 @@ INTERVAL_PATTERN = rf"^{INTERVAL_KEY}: (\S+)"
 
 
 class OneClock(NamedTuple):
-    """Columns at the times of one clock, and the places of those that had another."""
+    """Columns at the times of one clock, and the indices of those that had another."""
 
     values: list[np.ndarray]
     clock: Clock

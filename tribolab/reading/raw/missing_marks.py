@@ -26,7 +26,7 @@ _MARKS = np.array(
         *(2147483647.0, 2147483648.0, 4294967295.0),
     ]
 )
-# ends of 24- and 16-bit converters, possibly divided by a power of ten: -8388.608
+# full-scale values of 24- and 16-bit converters, possibly divided by a power of ten: -8388.608
 _FULL = np.array([8388607.0, 8388608.0, 16777215.0, 32767.0, 32768.0, 65535.0])
 _FULL = np.concatenate([_FULL / 10.0**power for power in range(1, 7)])
 _ROUNDED = 1e-5  # relative rounding of a sentinel with few decimals

@@ -149,7 +149,7 @@ def time_unit(values: np.ndarray) -> str:
 
 
 def proceeds_by_seconds(values: np.ndarray) -> bool:
-    """Whether a clock without a unit proceeds by a round part of a second, written with decimals.
+    """Whether a clock without a unit has decimals and steps by a round part of a second.
 
     A clock of milliseconds is a whole number; a second is no round part of a minute.
     File: Rtec MFT, "Timestamp" 0.168, 0.268 (Dichimanaym/Tribometer-Data-Processing).

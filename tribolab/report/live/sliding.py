@@ -82,7 +82,7 @@ def sliding_specs(
 def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int]:
     """Return the colour of each curve: that of its surface, or its own if that is ambiguous."""
     curves = [contact.curve for contact in judged]
-    # one load per surface is opened; dry and wet differ by their lines
+    # only one load per surface is shown; dry and wet differ in line style
     drawn = {(curve.surface, is_dry(curve.medium), _system(curve)) for curve in curves}
     if len({key[:2] for key in drawn}) == len(drawn):
         of_surface = surface_colours([*surfaces, *(curve.surface for curve in curves)])

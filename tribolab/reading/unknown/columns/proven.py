@@ -75,7 +75,7 @@ def add_unit_of_load(
 def add_unit_of_stroke(
     columns: Sequence[DraftColumn], numbers: np.ndarray, stroke: Amount | None
 ) -> list[DraftColumn]:
-    """Return positions without units in the unit in which they span the stated stroke.
+    """Give positions without a unit the unit in which their range is the stated stroke.
 
     File: "Track length [mm]: 5" above an x-Position from 0 to 5602 (liampond/EgbertsTribometer).
     """

@@ -157,7 +157,7 @@ def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftCo
             lengths.append(column)
         elif is_stroke_frequency(name, unit) and not column.used:
             frequencies.append(column)
-    # what is measured, if what was set is recorded, too
+    # the measured frequency, if the set one is recorded as well
     measured = [c for c in frequencies if role_of(c.label) != "set"]
     return lengths, measured if len(frequencies) > 1 else frequencies
 

@@ -183,7 +183,7 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
     filled = [line for line in lines if line.strip()]
     voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
     best, highest = None, 0
-    alone = False  # a character that is in no line keeps each whole, as does the next one
+    alone = False  # a delimiter that is in no line splits nothing: trying one such is enough
     for delimiter in DELIMITERS:
         if delimiter != "whitespace" and not any(delimiter in line for line in voters):
             if alone:
