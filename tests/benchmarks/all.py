@@ -19,13 +19,18 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 PROJECT = HERE.parents[1]
 PAGE = PROJECT / "docs" / "benchmarks.md"
-LONG = {"bench_big_run", "bench_one_run", "bench_scale", "bench_report"}
+LONG = {"bench_big_run", "bench_one_run", "bench_scale", "bench_report", "bench_figures"}
+LONG |= {"bench_adhesion", "bench_contact", "bench_stribeck"}  # solvers, without a peer
 LIBRARIES = ("numpy", "scipy", "pandas", "xarray", "polars", "SurfaceTopography", "matplotlib")
 
 
 def benchmark(script: Path) -> str:
     """Return the output of a benchmark; if it failed, its last words."""
-    one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(PROJECT)}
+    one_thread = {
+        "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "PYTHONPATH": f"{PROJECT}{os.pathsep}{PROJECT / 'tests'}",
+    }
     done = subprocess.run(
         [sys.executable, script], capture_output=True, text=True, env=os.environ | one_thread
     )

@@ -17,7 +17,9 @@ def least_times(rounds: int, **tasks: Callable[[], object]) -> dict[str, float]:
     return {name: min(values[1:]) for name, values in times.items()}
 
 
-def row(job: str, ours: float, peer: str, theirs: float, goal: float, unit: str = "s") -> None:
+def row(
+    job: str, ours: float, peer: str, theirs: float, goal: float | None, unit: str = "s"
+) -> None:
     """Print a row of docs/benchmarks.md: job, both numbers, their ratio and its goal."""
-    numbers = f"{ours:.3g} {unit} | {peer} | {theirs:.3g} {unit} | {ours / theirs:.2f} | {goal:g}"
-    print(f"| {job} | {numbers} |", flush=True)
+    numbers = f"{ours:.3g} {unit} | {peer} | {theirs:.3g} {unit} | {ours / theirs:.2f}"
+    print(f"| {job} | {numbers} | {'none set' if goal is None else f'{goal:g}'} |", flush=True)
