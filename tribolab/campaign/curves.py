@@ -234,7 +234,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
         reason,
         points_found,
         tuple(budget_rows(curve, known)),
-        SegmentAttributes.of(curve.attrs).uncertainty_says,
+        SegmentAttributes.from_attrs(curve.attrs).uncertainty_says,
         _model_inputs(frictions),
         traction,
         *_temperature(frictions),

@@ -13,10 +13,10 @@ class Attributes:
     """Attributes of one kind of dataset."""
 
     @classmethod
-    def of(cls, attrs: Mapping[Any, Any]) -> Self:
+    def from_attrs(cls, attrs: Mapping[Any, Any]) -> Self:
         """Return the record of a dataset's attributes.
 
-        >>> RunAttributes.of({"rows_are": "points", "source": "a.csv"}).rows_are
+        >>> RunAttributes.from_attrs({"rows_are": "points", "source": "a.csv"}).rows_are
         'points'
         """
         found = {}

@@ -105,7 +105,7 @@ def known_uncertainties(
     AnalysisError
         If a name is not known, or its statement is invalid.
     """
-    own = RunAttributes.of(friction.attrs).uncertainty
+    own = RunAttributes.from_attrs(friction.attrs).uncertainty
     known = {name: Known(**entry) for name, entry in own.items() if name in NAMES}
     for name in stated or {}:
         if name not in NAMES:

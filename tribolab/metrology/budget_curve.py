@@ -73,7 +73,7 @@ def curve_uncertainty(
     unstated: dict[str, bool] = {}
     for part, stated in zip(map(kept, frictions), known, strict=True):
         place, own, count = _point_of_segments(part, points)
-        met, instrument = count > 0, RunAttributes.of(part.attrs).instrument
+        met, instrument = count > 0, RunAttributes.from_attrs(part.attrs).instrument
         runs += met
         observations += count
         instruments[instrument] = instruments.get(instrument, np.zeros(size, dtype=bool)) | met

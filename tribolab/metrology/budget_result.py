@@ -40,7 +40,7 @@ class UncertaintyBudget:
     @property
     def caveats(self) -> str:
         """Omissions of the uncertainty, as text; "" if it is complete."""
-        return SegmentAttributes.of(self.data.attrs).uncertainty_says
+        return SegmentAttributes.from_attrs(self.data.attrs).uncertainty_says
 
     def table(self, at: int | None = None) -> pd.DataFrame:
         """Return the budget of one value, by default a typical one, as a table.

@@ -82,7 +82,7 @@ def readings_of(friction: xr.Dataset) -> SegmentReadings:
     load = _values(friction, "normal_force", np.nan)
     pair = _values(friction, "pair", -1).astype(int)
     sign = _values(friction, "direction", 1.0)
-    about = SegmentAttributes.of(friction.attrs)
+    about = SegmentAttributes.from_attrs(friction.attrs)
     offset = about.offset
     both = (pair >= 0) & (offset in PAIRED)
     change, middle = nothing, nothing

@@ -50,7 +50,7 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     table = pd.DataFrame.from_dict(rows, orient="index")
     # numbers formatted one by one: a column would use the digits of the largest
     table = table.astype({"lowest": object, "highest": object})
-    if called := RunAttributes.of(whole.attrs).columns_used:
+    if called := RunAttributes.from_attrs(whole.attrs).columns_used:
         table["column"] = [called.get(name, "") for name in table.index]
     return table.rename_axis("variable")
 

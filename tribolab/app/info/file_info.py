@@ -87,7 +87,7 @@ def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> 
         return []
     facts = file_facts(log, path, instrument)
     whole = facts["left_out"] or facts["are_points"] or facts["steps"]
-    if whole or RunAttributes.of(log.attrs).time_source != "recorded":
+    if whole or RunAttributes.from_attrs(log.attrs).time_source != "recorded":
         return []
     header = part.lines - facts["rows"]
     facts["rows"], facts["longest_interval_s"] = part.lines_of_whole - header, None
@@ -233,7 +233,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 
     traces = list(read_scan(path, instrument).values())
     scan = traces[0]
-    name = RunAttributes.of(scan.attrs).instrument
+    name = RunAttributes.from_attrs(scan.attrs).instrument
     axes = [axis for axis in ("x", "y") if scan.sizes.get(axis, 1) > 1]
     lines = [
         f"{path}: {_title_of(name, instrument)}",

@@ -49,7 +49,7 @@ def _try_run(file: Path, dialect: Path) -> str:
     run = read_run(file, dialect, pair=False)
     time = run["time"].values
     text = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
-    if RunAttributes.of(run.attrs).rows_are == "points":
+    if RunAttributes.from_attrs(run.attrs).rows_are == "points":
         text = f"{Count(len(time)):result|results}, each at one speed"
     if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.variables):
         return f"{text}; no friction coefficient yet: nothing holds the friction"
@@ -105,7 +105,7 @@ def _coefficients(friction: xr.Dataset) -> str:
 def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
     """Whether the direction of sliding is unknown; a signed set-point gives it."""
     unknown = bool(segments["sliding_speed"].isnull().any())
-    by_set_speed = SegmentAttributes.of(segments.attrs).velocity_source == "set speed"
+    by_set_speed = SegmentAttributes.from_attrs(segments.attrs).velocity_source == "set speed"
     signed = "set_speed" in run and bool((run["set_speed"] < 0).any())
     return unknown or (by_set_speed and not signed)
 

@@ -167,7 +167,7 @@ def _evaluate(
 
 def _add_uncertainties(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
     """Return the signals with all stated calibration uncertainties, first the campaign's."""
-    stated = RunAttributes.of(signals.attrs).uncertainty | run.uncertainty
+    stated = RunAttributes.from_attrs(signals.attrs).uncertainty | run.uncertainty
     return signals.assign_attrs(uncertainty=stated) if stated else signals
 
 
@@ -191,7 +191,7 @@ def _add_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
     """Return the signals with the set-points of the campaign file."""
     signals = read.copy()
     if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
-        missing = RunAttributes.of(signals.attrs).companion_missing
+        missing = RunAttributes.from_attrs(signals.attrs).companion_missing
         raise ConfigError(
             f"{signals.attrs['source']}: there is no second log"
             f"{missing and f' ({missing})'} whose clock could be shifted; "
@@ -216,7 +216,7 @@ def _add_stated_load(signals: xr.Dataset) -> xr.Dataset:
     load = signals.get("set_normal_force", signals.attrs.get("set_normal_force_N"))
     if load is None or "friction_force" not in signals or _LOADS & set(signals.variables):
         return signals
-    derived = RunAttributes.of(signals.attrs).derived | {"normal_force": "stated"}
+    derived = RunAttributes.from_attrs(signals.attrs).derived | {"normal_force": "stated"}
     stated = np.broadcast_to(load, signals.sizes["time"]).astype(float)
     return stamp(signals.assign(normal_force=("time", stated)).assign_attrs(derived=derived))
 

@@ -75,7 +75,9 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
 def _has_only_its_files(run: PlannedRun, attrs: Json) -> bool:
     """Whether only files of the run were read; a second log or a blank run may change."""
     alone = len(str(attrs.get("source", "")).split("; ")) == len(run.files)
-    blank = any(parse_zero(str(text)).file for text in RunAttributes.of(attrs).zeros_read.values())
+    blank = any(
+        parse_zero(str(text)).file for text in RunAttributes.from_attrs(attrs).zeros_read.values()
+    )
     return alone and not blank and "companion_missing" not in attrs
 
 

@@ -23,7 +23,7 @@ _DIGITS = 6
 
 def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | float]:
     """Return the attributes of a friction result from which `zero_of` reads the zero."""
-    about = SegmentAttributes.of(friction.attrs)
+    about = SegmentAttributes.from_attrs(friction.attrs)
     method, sure = about.offset, all(d["status"] == "pass" for d in about.zero_doubts)
     friction = kept(friction)
     if method in ("half loop", "zero load") and sure and "friction_force_offset" in friction:

@@ -30,7 +30,7 @@ def kept_text(path: Path, why: str) -> str:
 
     try:
         root = read_groups(path, [None], only={"": ()})[None]
-        when = RunAttributes.of(root.attrs).history.split(" ")[0]
+        when = RunAttributes.from_attrs(root.attrs).history.split(" ")[0]
     except ReadError:
         when = ""
     return f"kept from {when or 'before'}: {why}"

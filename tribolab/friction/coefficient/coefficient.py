@@ -290,7 +290,7 @@ def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
         return _table(data, reasons, zero, run, "")
 
     ratio = (turn * means - signs.sign * zero.value) / divisor
-    stated = RunAttributes.of(run.attrs).uncertainty
+    stated = RunAttributes.from_attrs(run.attrs).uncertainty
     both = reversal_of(zero, pair, divisor, middle, ratio, rests, stated)
     pointwise: list[_RatioRemarks] = []
 
@@ -438,7 +438,7 @@ def _ratio_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -
     )
     turn = signs.sign * signs.unfold
     about = turn * means - signs.sign * zero.value
-    stated = RunAttributes.of(run.attrs).uncertainty
+    stated = RunAttributes.from_attrs(run.attrs).uncertainty
     both = reversal_of(zero, pair, alike, middle, about, None, stated)
     read = about + signs.sign * both.tilted
     mu, tilt = both.remove_tilt(read, signs.sign, alike)

@@ -124,7 +124,7 @@ def _affected_segments(segments: xr.Dataset, decision: Decision) -> list[int]:
     # results cannot be recomputed without the signals
     if decision.action == NEW_BOUNDS:
         raise _refused(segments, decision, "new bounds need the friction to be computed again")
-    if len(places) < len(every) and SegmentAttributes.of(segments.attrs).offset in PAIRED:
+    if len(places) < len(every) and SegmentAttributes.from_attrs(segments.attrs).offset in PAIRED:
         raise _refused(segments, decision, "the friction of the other strokes depends on it")
     return places
 

@@ -70,7 +70,7 @@ def _observe_run(friction: xr.Dataset, run: int) -> Observations:
     wide = np.where(np.isfinite(wide), wide, NORMAL * sem)
     wanted = np.abs(column("set_speed"))
     pairs = np.full(value.size, -1.0)
-    if "pair" in friction and SegmentAttributes.of(friction.attrs).offset in PAIRED:
+    if "pair" in friction and SegmentAttributes.from_attrs(friction.attrs).offset in PAIRED:
         pairs = friction["pair"].values.astype(float)
     known = np.isfinite(value) & (speed > 0)
     shared = column(f"{name}_shared_sem")

@@ -136,7 +136,7 @@ def find_segments(
     constancy = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source, standstill = velocity_source(run), 0.0
-    rows_are = RunAttributes.of(run.attrs).rows_are
+    rows_are = RunAttributes.from_attrs(run.attrs).rows_are
     if rows_are == "points":
         return _use_points(run, source)
     if stroke_middle is not None:

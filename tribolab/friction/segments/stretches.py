@@ -44,7 +44,7 @@ def name_of(run: xr.Dataset) -> str:
 def velocity_source(run: xr.Dataset) -> str:
     """Return the source of the speed of the run, the best one available."""
     stated = "set_speed" in run or "set_speed_m_s" in run.attrs
-    clocked = RunAttributes.of(run.attrs).time_source != "row number"
+    clocked = RunAttributes.from_attrs(run.attrs).time_source != "row number"
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
         if name == "position" and stated and not clocked:
             continue  # a speed is not derived from rows counted as seconds
@@ -327,7 +327,7 @@ def _set_speed(run: xr.Dataset, first: int, last: int) -> float:
         values = np.asarray(run["set_speed"].values[first:last], dtype=float)
         values = values[np.isfinite(values)]
         return float(median(values)) if values.size else np.nan
-    return RunAttributes.of(run.attrs).set_speed_m_s
+    return RunAttributes.from_attrs(run.attrs).set_speed_m_s
 
 
 def _signed(run: xr.Dataset, first: int, last: int, speed: float) -> float:

@@ -62,7 +62,7 @@ def load_reading(
     known = pressed[np.isfinite(pressed) & (pressed > 0)]
     if not known.size:
         return nothing
-    stated = "normal_zero" in RunAttributes.of(run.attrs).uncertainty
+    stated = "normal_zero" in RunAttributes.from_attrs(run.attrs).uncertainty
     retained = nothing if stated else _retained(offset, float(median(known)))
     found = [retained, LoadReading(_creep(run, segments, parts, pressed), ())]
     if zero.method != "half loop":

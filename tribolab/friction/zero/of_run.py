@@ -152,7 +152,7 @@ def _zero_from_file(run: xr.Dataset, name: str) -> tuple[float, str]:
     unit = quantity(name).unit
     ending = "" if unit == "1" else f"_{unit}"
     error = float(run.attrs.get(f"{name}_zero_sem{ending}", np.nan))
-    about = RunAttributes.of(run.attrs)
+    about = RunAttributes.from_attrs(run.attrs)
     read, stated = about.zeros_read.get(name, ""), about.zeros_stated.get(name, "")
     return error, read or (f"the text of the file ({stated})" if stated else "")
 
@@ -181,7 +181,7 @@ def _torque(given: str | float) -> float | None:
 
 def _arm(run: xr.Dataset, name: str) -> float:
     """Return the lever arm [m] that converted a torque to the friction force."""
-    formula = RunAttributes.of(run.attrs).derived.get(name, "")
+    formula = RunAttributes.from_attrs(run.attrs).derived.get(name, "")
     made = _FROM_TORQUE.fullmatch(formula)
     arm = float("nan")
     if made is not None:
@@ -235,7 +235,7 @@ def _fold(
         stated = run.attrs.get(f"{name}_rectified")
     if stated is not None:
         return Fold("rectified", "") if stated else SIGNED
-    if SegmentAttributes.of(segments.attrs).velocity_source not in ("recorded", "position"):
+    if SegmentAttributes.from_attrs(segments.attrs).velocity_source not in ("recorded", "position"):
         return SIGNED  # the direction was derived from the force, or there is none
     rest = float(median(rests.value)) if rests is not None else float("nan")
     normal = run["normal_force"].values if "normal_force" in run and parts else None

@@ -97,7 +97,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
     """
     friction = subject.friction
     direction = friction["direction"].values
-    method = SegmentAttributes.of(friction.attrs).offset
+    method = SegmentAttributes.from_attrs(friction.attrs).offset
     both = all((direction[wrong] == d).any() for d in (1, -1))
     if _unsigned_speed(subject) and right.any():
         return (

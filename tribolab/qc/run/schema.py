@@ -97,7 +97,7 @@ def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
     if not any(name in run for name in _SPEED) and "set_speed_m_s" not in run.attrs:
         text = "the speed is unknown (none of " + ", ".join(_SPEED) + ")"
         cure = "Let the dialect say the speed: a column, [speed], or a value 'set_speed'."
-        if other := RunAttributes.of(run.attrs).companion_missing:
+        if other := RunAttributes.from_attrs(run.attrs).companion_missing:
             text += f": the companion log {other} is not there"
             cure = f"Put {other} next to this file, or give both."
         missing.append((text, cure))

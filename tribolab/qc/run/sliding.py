@@ -122,7 +122,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     speed, mu = friction["sliding_speed"].values, friction[name].values
     sem, wide = (friction[f"{name}_beyond_{end}"].values for end in ("sem", "U95"))
     pairs = np.full(mu.size, -1.0)
-    if "pair" in friction and SegmentAttributes.of(friction.attrs).offset in PAIRED:
+    if "pair" in friction and SegmentAttributes.from_attrs(friction.attrs).offset in PAIRED:
         pairs = friction["pair"].values.astype(float)
     moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
     means = []

@@ -107,19 +107,19 @@ class RunSubject:
     @cached_property
     def about(self) -> RunAttributes:
         """Attributes of the run."""
-        return RunAttributes.of(self.run.attrs)
+        return RunAttributes.from_attrs(self.run.attrs)
 
     @property
     def segment_about(self) -> SegmentAttributes:
         """Attributes of the segments; raises `Skip` without any."""
-        return SegmentAttributes.of(self.segments.attrs)
+        return SegmentAttributes.from_attrs(self.segments.attrs)
 
     @property
     def is_points(self) -> bool:
         """Whether the rows are results of the instrument instead of samples."""
         found = self._segments_or_skip
         return not isinstance(found, Skip) and (
-            SegmentAttributes.of(found.attrs).rows_are == "points"
+            SegmentAttributes.from_attrs(found.attrs).rows_are == "points"
         )
 
     @cached_property

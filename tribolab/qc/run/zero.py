@@ -14,7 +14,7 @@ def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     friction = subject.friction
     signal = subject.required_friction_signal
     doubts = _doubts(subject, "zero_reference", signal)
-    method = SegmentAttributes.of(friction.attrs).offset
+    method = SegmentAttributes.from_attrs(friction.attrs).offset
     return doubts or [Result("pass", signal, f"the zero is from: {method}")]
 
 
@@ -26,7 +26,7 @@ def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
     """Return results for each doubt about the zero, without flags on samples."""
-    doubts: list[Doubt] = SegmentAttributes.of(subject.friction.attrs).zero_doubts
+    doubts: list[Doubt] = SegmentAttributes.from_attrs(subject.friction.attrs).zero_doubts
     results = []
     for doubt in doubts:
         if doubt["check"] != check:

@@ -82,9 +82,9 @@ def estimate_clock_shift(
     try:
         with one_thread():
             search = _Search(force_time, force, motion_time, velocity)
-            search.by_classes(expected, dated)
-            search.by_starts()
-            search.by_motion()
+            search.search_by_classes(expected, dated)
+            search.search_by_starts()
+            search.search_by_motion()
             return search.combined()
     except _UndeterminedError:
         return None
@@ -114,7 +114,7 @@ class _Search:
         self.wide = _has_different_speeds(self.motion, self.way)
         self.ways: dict[str, Estimate] = {}
 
-    def by_classes(self, expected: float, dated: bool) -> None:
+    def search_by_classes(self, expected: float, dated: bool) -> None:
         """Find the shift by velocity classes, of several the likeliest."""
         apart = limits.MIN_DISTANCE_OF_SHIFTS.value * self.basis.stroke
         coarse = coarse_shift(
@@ -142,7 +142,7 @@ class _Search:
         _require(not self.vague or (self.wide and not self.weak))
         self.ways["classes"] = self.first
 
-    def by_starts(self) -> None:
+    def search_by_starts(self) -> None:
         """Refine the shift by the starts of motion: of all speeds, and of fast strokes."""
         shift, uncertainty = self.first
         # friction remains at rest, so the shift may be late by up to a rest
@@ -212,7 +212,7 @@ class _Search:
         """Middle of the motion log [s], on its own clock."""
         return float(0.5 * (self.motion_time[0] + self.motion_time[-1]))
 
-    def by_motion(self) -> None:
+    def search_by_motion(self) -> None:
         """Fit the force with all effects of motion, close to the shift found from the starts."""
         estimate = self.estimate
         durations = np.diff(self.motion_time[changes(self.way)])

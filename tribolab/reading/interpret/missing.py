@@ -63,7 +63,7 @@ class MissingInput(NamedTuple):
 
     @property
     def option(self) -> str:
-        """Option of the command line that states it, with an example; "" if there is none."""
+        """Option of the command line that states it, with an example; "" without one."""
         return "" if self._shuttles else _OPTIONS.get(self.member, "")
 
     @property

@@ -62,7 +62,7 @@ def file_facts(log: Signals, path: PathLike, instrument: Instrument | None = Non
     """
     time, signals, attrs = log
     gaps = np.diff(time)
-    about = RunAttributes.of(attrs)
+    about = RunAttributes.from_attrs(attrs)
     name, unused = about.instrument, about.columns_not_used
     columns: dict[str, ColumnFacts] = {
         name: {

@@ -99,7 +99,9 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     zeros_of_derived(columns, signals, attrs)
     read = take_zeros(columns, time, _zeros_of_formulas(attrs, dialect, zero), blank, where)
     if read:
-        attrs |= read | {"zeros_read": RunAttributes.of(attrs).zeros_read | read["zeros_read"]}
+        attrs |= read | {
+            "zeros_read": RunAttributes.from_attrs(attrs).zeros_read | read["zeros_read"]
+        }
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect, of_steps)
@@ -116,7 +118,7 @@ def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[
     """Return the source of the zeros of computed quantities."""
     rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
     rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
-    derived = RunAttributes.of(attrs).derived
+    derived = RunAttributes.from_attrs(attrs).derived
     return {name: text for name, text in rules.items() if name in derived}
 
 

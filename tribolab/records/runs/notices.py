@@ -102,14 +102,17 @@ def notices_of(
             say("suspect", STEPS, differ)
     for text in _remarks(friction):
         say("note", "friction", text)
-    offset = SegmentAttributes.of(friction.attrs).offset
+    offset = SegmentAttributes.from_attrs(friction.attrs).offset
     if offset.startswith("none"):
         say("note", "friction", f"offset of the force: {offset}")
     if (track := position_range(segments)) is not None:
         low, high = (f"{1e3 * end:.4g}" for end in track)
         text = f"what lies outside positions {low} to {high} mm of each stroke"
         say("note", STROKE_ENDS, text)
-    about, reading = SegmentAttributes.of(segments.attrs), RunAttributes.of(run.attrs)
+    about, reading = (
+        SegmentAttributes.from_attrs(segments.attrs),
+        RunAttributes.from_attrs(run.attrs),
+    )
     if (share := about.stroke_middle) > 0 and segments.sizes["segment"]:
         whole, used = times_of_strokes(segments)
         strokes = many(segments.sizes["segment"], "stroke")

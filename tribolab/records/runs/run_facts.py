@@ -61,7 +61,7 @@ def facts_of(
         stick_slip=stick_slip_of(slip),
         omitted=(*left_out(segments), *ends_of_strokes(segments)),
         segments=plain_rows(friction_columns(friction)),
-        uncertainty_says=SegmentAttributes.of(friction.attrs).uncertainty_says,
+        uncertainty_says=SegmentAttributes.from_attrs(friction.attrs).uncertainty_says,
         flagged=tuple(flagged_spans(run)),
     )
 
@@ -83,7 +83,7 @@ def main_quantity(friction: xr.Dataset) -> str:
 def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
     """Return the facts extended by those of the run itself."""
     time = np.asarray(run["time"], float)
-    about = RunAttributes.of(run.attrs)
+    about = RunAttributes.from_attrs(run.attrs)
     shift = {k: float(v) for k, v in run.attrs.items() if k in _SHIFT and not isinstance(v, str)}
     return replace(
         facts,
@@ -116,7 +116,7 @@ def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
 
 def findings_of(run: xr.Dataset) -> list[FindingRow]:
     """Return the results of the checks on a run as plain rows."""
-    return RunAttributes.of(run.attrs).findings
+    return RunAttributes.from_attrs(run.attrs).findings
 
 
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
@@ -145,7 +145,7 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         values_of(friction, f"{of}_shared_sem", value.size),
         pairs_of(friction),
     )
-    about = SegmentAttributes.of(friction.attrs)
+    about = SegmentAttributes.from_attrs(friction.attrs)
     levels = value[finite]
     if np.isfinite(about.stroke_middle):  # one of hundreds of strokes has little weight
         levels = np.array([value[part].mean() for part in segments_by_speed(speed, finite)])
@@ -269,7 +269,7 @@ def wider_error(friction: xr.Dataset, name: str, ending: str) -> np.ndarray:
 
 def pairs_of(friction: xr.Dataset) -> np.ndarray:
     """Return the number of the pair of each segment; -1 for none."""
-    if "pair" not in friction or SegmentAttributes.of(friction.attrs).offset not in PAIRED:
+    if "pair" not in friction or SegmentAttributes.from_attrs(friction.attrs).offset not in PAIRED:
         return np.full(friction.sizes["segment"], -1.0)
     return np.asarray(friction["pair"], float)
 
@@ -324,7 +324,7 @@ def times_of_strokes(segments: xr.Dataset) -> tuple[float, float]:
 
 def ends_of_strokes(segments: xr.Dataset) -> list[LeftOut]:
     """Return the parts of the strokes outside a chosen middle, as a row."""
-    share = SegmentAttributes.of(segments.attrs).stroke_middle
+    share = SegmentAttributes.from_attrs(segments.attrs).stroke_middle
     if np.isnan(share) or not segments.sizes["segment"]:
         return []
     whole, used = times_of_strokes(segments)

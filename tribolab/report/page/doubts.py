@@ -16,7 +16,7 @@ _MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in the doubt about 
 _REPEATS = "repeats"  # name of the check
 _COMPARE = "Compare its trace with those of its repeats."
 _COMPARE_ALL = "They are still in the means. Compare their traces with those of their repeats."
-_UNCERTAIN = 0.25  # U95 of a mean over the mean, of which a result of one digit is left
+_UNCERTAIN = 0.25  # U95 of a mean over the mean, above which only one digit is certain
 _UNCALIBRATED = "statistical only"
 
 

@@ -32,7 +32,7 @@ _LIKE_A_DATE = re.compile(r"\d:\d|^\s*\d{4}-?\d\d")
 def find_form(texts: Sequence[str]) -> tuple[str, str]:
     """Find the form of the dates and times in a column.
 
-    Return it, and one that fits as well; "" if there is none.
+    Return it, and one that fits as well; "" without a second.
 
     Examples
     --------

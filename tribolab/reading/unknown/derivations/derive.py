@@ -52,7 +52,7 @@ def _derived(found: _Same) -> Follows:
     result = Follows(zero_in_doubt=known.zero_in_doubt, given=known.given, facts=known.facts)
     turning = derive("rotation_speed", known.given)
     if turning is not None and turning.rule is not None:
-        result = result.with_derivation(turning)
+        result = result.add_derivation(turning)
         known.given["rotation_speed"] = Given("rotation_speed", "rotation_speed", None)
     result = add_speed(result, layout, understood, known)
     result = _add_friction(result, known, understood)
@@ -72,7 +72,7 @@ def _add_friction(result: Follows, known: KnownRun, understood: Understood) -> F
     wanted = not others or by_area or any(name in known.given for name in _MEASURED)
     if friction is None or friction.rule is None or not wanted:
         return result
-    return result.with_derivation(friction)
+    return result.add_derivation(friction)
 
 
 def _add_load(result: Follows, understood: Understood, known: KnownRun) -> Follows:
@@ -85,12 +85,12 @@ def _add_load(result: Follows, understood: Understood, known: KnownRun) -> Follo
     set_to = _set_load(load)
     if load is not None and load.rule is not None and set_to is None:
         of_forces = "axial_force" not in known.given or "friction_force" in friction
-        return result.with_derivation(load) if of_forces else result
+        return result.add_derivation(load) if of_forces else result
     stated = None if understood.load else find_stated_load(known.values, understood)
     wanted = friction & SAYS_FRICTION and not names & SAYS_LOAD
     if set_to is not None and load is not None and wanted:
         about = f"nothing measures it: {_quoted(set_to)} is taken for all of the run"
-        return result.with_derivation(load, about)
+        return result.add_derivation(load, about)
     measured = names & {"normal_force", "normal_stress", "set_normal_force"}
     if stated is not None and (not measured or _is_held(stated, understood)):
         # under which a coefficient stands, or what the measured one was set to

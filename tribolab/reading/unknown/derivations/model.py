@@ -60,7 +60,7 @@ class Follows(NamedTuple):
         """Return this with columns that formulas or the speed need."""
         return self._replace(symbols=tuple(dict.fromkeys((*self.symbols, *symbols))))
 
-    def with_derivation(self, derived: Derivation[Source], about: str = "") -> Follows:
+    def add_derivation(self, derived: Derivation[Source], about: str = "") -> Follows:
         """Return this with the formula of what follows by a rule, and all that it needs."""
         leaves = derived.leaves
         values = [leaf.source for leaf in leaves if isinstance(leaf.source, Amount)]

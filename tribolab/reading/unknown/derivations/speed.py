@@ -57,14 +57,14 @@ def add_speed(result: Follows, layout: Layout, understood: Understood, known: Kn
         return _by_set_speed(result, sliding, steady=is_steady(understood))
     if sliding.rule.speed == "stroke" and known.strokes is not None:
         return _by_strokes(result, known.strokes, layout, understood, sliding)
-    result = result.with_derivation(sliding)._replace(speed=SpeedBy("none"))
+    result = result.add_derivation(sliding)._replace(speed=SpeedBy("none"))
     rotation = known.given.get("set_rotation")
     if sliding.is_doubtful and rotation is not None and isinstance(rotation.source, Amount):
         about = "is how fast it turns all along"
         result = result._replace(speed=_asked(SpeedBy("none"), rotation.source, about))
     rolling = derive("rolling_speed", known.given, known.facts)
     if rolling is not None and rolling.rule is not None:
-        result = result.with_derivation(rolling, "their mean speed")
+        result = result.add_derivation(rolling, "their mean speed")
     return result
 
 
@@ -85,7 +85,7 @@ def _by_position(
         way = understood.numbers[:, column.place - 1]
         kept = stated[0]._replace(name="stated_speed", to="m/s", unit=stated[0].own_unit)
         return result.with_values(kept) if reversals(way - np.nanmean(way)) else result
-    return result.with_derivation(position)._replace(speed=SpeedBy("position"))
+    return result.add_derivation(position)._replace(speed=SpeedBy("position"))
 
 
 def _by_rotation(result: Follows, sliding: Derivation[Source]) -> Follows:
@@ -98,7 +98,7 @@ def _by_rotation(result: Follows, sliding: Derivation[Source]) -> Follows:
         if radius.source.source != "step":
             speed = SpeedBy("rotation", (("radius_value", radius.symbol),))
             return result.with_values(radius.source)._replace(speed=speed)
-    return result.with_derivation(sliding)._replace(speed=SpeedBy("none"))
+    return result.add_derivation(sliding)._replace(speed=SpeedBy("none"))
 
 
 def _by_set_speed(result: Follows, sliding: Derivation[Source], *, steady: bool) -> Follows:

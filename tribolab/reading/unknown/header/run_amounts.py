@@ -104,7 +104,7 @@ def _scaled(values: Amounts, name: str, scale: float) -> Amounts:
 def find_load(values: Sequence[Amount]) -> Amount | None:
     """Return the load that the text before the table states, as a force; None if none, or several.
 
-    If the text states none, that of the file's name. A load of zero is none.
+    If the text states no load, that of the file's name counts. Zero is not a load.
     """
     contacts = next(filter(None, (contacts_in(v.text) for v in values if not v.own_unit)), 1)
     fitting = Amounts(
