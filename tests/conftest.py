@@ -43,6 +43,14 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: -slow[item.path])
 
 
+@pytest.fixture(scope="session", autouse=True)
+def one_process():
+    """Work in this process by default, on any machine; tests of processes ask for them."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("tribolab.campaign.engine.executor.default_jobs", lambda: 1)
+        yield
+
+
 @pytest.fixture
 def without(tmp_path_factory, monkeypatch):
     """Have libraries be missing for what reads files: in this process, and in its children."""
