@@ -4,10 +4,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from tribolab.records.parts import CurveOutcome
+from tribolab.records.parts import CurveOutcome, RunOutcome
+from tribolab.records.runs.run_record import RunRecord
 from tribolab.report.document.document import verdict
 from tribolab.report.live.curves import curve_label
 from tribolab.report.live.points import RunPoint, of_curve, run_points
+from tribolab.report.live.starts import static_figures
 from tribolab.report.page.doubts import doubts
 from tribolab.report.page.key_numbers import friction_numbers
 from tribolab.report.page.run_list import listed_runs
@@ -193,3 +195,49 @@ def test_runs_are_listed_worst_first_with_their_deviation_from_usable_repeats():
         ("0.4", ""),
     ]
     assert [row.state for row in listed.rows[:2]] == ["rejected", "odd"]
+
+
+def started(name, load, static, rests=(3.0, 10.0, 31.0)):
+    """A run with a start after each rest, at a kinetic friction of 0.4."""
+    outcome = RunOutcome(
+        name=name,
+        status="done",
+        data_file="",
+        files=(),
+        surface="glass",
+        medium="dry",
+        normal_force=load,
+        load_from="stated",
+    )
+    starts = tuple(
+        {"waiting_time_s": rest, "static_friction_coefficient": mu, "friction_coefficient": 0.4}
+        | {"static_friction_coefficient_sem": 0.001}
+        for rest, mu in zip(rests, static, strict=True)
+    )
+    return RunRecord(outcome, (), starts=starts)
+
+
+def test_starts_after_equal_rests_are_averaged():
+    pair = [started("a", 5.0, (0.5, 0.52, 0.54)), started("b", 5.0, (0.52, 0.52, 0.54))]
+    (figure,) = static_figures([*pair, started("c", 9.0, (0.6, 0.62, 0.64))])
+    rows = [row.cells[1:] for row in figure.numbers.rows]
+    # 12.7 standard errors of the mean of two, else the U95 of one start
+    assert rows[:3] == [
+        ("5 N", "3", "0.51 ± 0.13", "0.4", "2"),
+        ("5 N", "10", "0.520 ± 0.002", "0.4", "2"),
+        ("5 N", "31", "0.540 ± 0.002", "0.4", "2"),
+    ]
+    assert [row[0] for row in rows[3:]] == ["9 N"] * 3
+
+
+def test_the_list_names_the_reason_that_sets_a_run_apart():
+    zero = {"check": "zero_reference", "status": "suspect", "decision": "", "message": "no rest"}
+    odd = zero | {"check": "repeats", "message": "21 % above"}
+    runs = [run(name, 31.0, quality="suspect") | {"checks": [zero]} for name in "ab"]
+    runs.append(run("c", 31.0, quality="suspect") | {"checks": [zero, odd]})
+    rows = {row.run["name"]: row.why for row in listed_runs(runs, {}, {}).rows}
+    assert rows == {
+        "a": "zero reference (all runs)",
+        "b": "zero reference (all runs)",
+        "c": "repeats: 21 % above (and 1 more)",
+    }

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 from rich.table import Table
 
-from tribolab.core.wording import number
-from tribolab.records.parts import number_of
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.running_in_record import RunningIn, length_text
-from tribolab.records.runs.starts import starts_of
-from tribolab.records.wording import NORMAL, error_text
+from tribolab.records.wording import error_text
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
@@ -23,7 +19,7 @@ _NONE = "–"
 
 def answer_table(outcome: Outcome) -> Table | None:
     """Return the table that answers the test, for a few runs; None if the curves do so."""
-    return _static_table(outcome) or _ramp_table(outcome) or running_in_table(outcome)
+    return _starts_or_ramps(outcome) or running_in_table(outcome)
 
 
 def _table(*headings: str) -> Table:
@@ -34,47 +30,23 @@ def _table(*headings: str) -> Table:
     return table
 
 
-def _static_table(outcome: Outcome) -> Table | None:
-    """Return static and kinetic friction after each rest, or None for other tests."""
-    table = _table("run", "rest (s)", "static µ ± U95", "kinetic µ")
-    for run in outcome.runs[:_MAX_ROWS]:
-        entry = outcome.store.get("run", run.name, RunRecord)
-        for row in starts_of(entry.record) if entry is not None else ():
-            error = number_of(row, "static_friction_coefficient_sem")
-            table.add_row(
-                run.name,
-                number(number_of(row, "waiting_time_s") or 0.0),
-                error_text(
-                    number_of(row, "static_friction_coefficient"),
-                    None if error is None else NORMAL * error,
-                ),
-                error_text(number_of(row, "friction_coefficient"), None),
-            )
-    return table if 0 < table.row_count <= _MAX_ROWS else None
-
-
-def _ramp_table(outcome: Outcome) -> Table | None:
-    """Return the range of friction of runs that consist of ramps; None for other tests."""
+def _starts_or_ramps(outcome: Outcome) -> Table | None:
+    """Return static friction after rests, or the extremes of ramps; None for other tests."""
     # imported late for a quick start
     from tribolab.report.live.ramps import ramp_specs
-    from tribolab.report.plain import plain_speed
+    from tribolab.report.live.starts import static_figures
 
-    ramps = [run for run in outcome.runs if run.ramp and run.done]
-    if not ramps or len(ramps) > _MAX_ROWS or any(run.segments for run in outcome.runs):
+    runs = outcome.runs[:_MAX_ROWS]
+    entries = [outcome.store.get("run", run.name, RunRecord) for run in runs]
+    specs = static_figures([entry.record for entry in entries if entry is not None])
+    if not any(run.segments for run in outcome.runs):
+        specs += ramp_specs([run for run in runs if run.ramp and run.done], outcome.folder)
+    if not specs or (numbers := specs[0].numbers) is None or len(numbers.rows) > _MAX_ROWS:
         return None
-    table = _table("ramp", "speeds", "highest µ", "at", "lowest µ", "at")
-    for leg in (leg for spec in ramp_specs(ramps, outcome.folder) for leg in spec.series):
-        speeds, mu = leg.x, leg.y
-        high, low = int(np.argmax(mu)), int(np.argmin(mu))
-        table.add_row(
-            leg.label,
-            f"{plain_speed(min(speeds))} to {plain_speed(max(speeds))}",
-            number(mu[high]),
-            plain_speed(speeds[high]),
-            number(mu[low]),
-            plain_speed(speeds[low]),
-        )
-    return table if table.row_count else None
+    table = _table(*numbers.heads)
+    for row in numbers.rows:
+        table.add_row(*row.cells)
+    return table
 
 
 def running_in_table(outcome: Outcome) -> Table | None:

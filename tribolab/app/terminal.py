@@ -15,6 +15,7 @@ from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.core.provenance import as_text
 from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
+from tribolab.records.judgement import has_unknown_zero
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
@@ -102,11 +103,11 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
         str(segments) if "segments" in points[0] else "",
         f"{range_of(f'{min(speed):.3g}', f'{max(speed):.3g}')} m/s",
         range_of(f"{min(mu):.3f}", f"{max(mu):.3f}"),
-        _largest_error(points),
+        _largest_error(points, with_zero=not _zero_unknown(curve, outcome)),
     )
 
 
-def _largest_error(points: Sequence[Row]) -> str:
+def _largest_error(points: Sequence[Row], with_zero: bool = True) -> str:
     """Return the largest U95, and whether it is within or between runs."""
     own = [row.get("friction_coefficient_U95") for row in points]
     known = [float(v) for v in own if v is not None]
@@ -116,7 +117,16 @@ def _largest_error(points: Sequence[Row]) -> str:
     source = "within or between runs"
     if all(several) or not any(several):
         source = "between runs" if several[0] else "within the run"
+    source = source if with_zero else "without zero"
     return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} {source}"
+
+
+def _zero_unknown(curve: CurveOutcome, outcome: Outcome) -> bool:
+    """Return whether U95 of a few runs does not include their zero."""
+    few = curve.run_names if len(curve.run_names) <= _SHOWN else ()
+    entries = [outcome.store.get("run", name, RunRecord) for name in few]
+    checks = [asdict(row) for entry in entries if entry for row in entry.record.facts.checks]
+    return has_unknown_zero(checks)
 
 
 def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:

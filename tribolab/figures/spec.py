@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any, Literal, TypedDict
+from typing import Any, Literal, NamedTuple, TypedDict
 
 import numpy as np
 
@@ -21,7 +21,8 @@ Width = Literal["card", "half", "whole"]
 Values = Sequence[Any] | np.ndarray
 _MAX_CARD_LABELS = 8  # most labels in the legend of a card, as in `assets/picture.js`
 _DIGITS = 6  # exceeds the resolution of screens
-_NOT_ON_PAGE = frozenset({"columns", "keys", "paper", "column", "across", "name", "pale", "thin"})
+_NOT_ON_PAGE = frozenset({"columns", "keys", "paper", "column", "across", "name", "pale"})
+_NOT_ON_PAGE |= {"thin", "numbers"}
 
 
 @dataclass(frozen=True)
@@ -199,6 +200,22 @@ class Key:
     colour: int = 6
 
 
+class KeyRow(NamedTuple):
+    """Row of cells in words, with labels for the choice of surface, medium and load."""
+
+    cells: tuple[str, ...]
+    surface: str = ""
+    medium: str = ""
+    load: float | None = None
+
+
+class KeyTable(NamedTuple):
+    """Heads and rows; the first cell of each row is its name."""
+
+    heads: tuple[str, ...]
+    rows: tuple[KeyRow, ...]
+
+
 @dataclass(frozen=True)
 class FigureSpec:
     """Figure, independent of its renderer.
@@ -223,6 +240,8 @@ class FigureSpec:
         Whether names are listed along the ordinate, which fixes its height.
     across
         Number of panels in a row on paper.
+    numbers
+        Its key numbers, for the page and the terminal.
     """
 
     id: str = ""
@@ -239,6 +258,7 @@ class FigureSpec:
     across: int = 1
     marks: tuple[Mark, ...] = ()
     keys: tuple[Key, ...] = ()
+    numbers: KeyTable | None = None
 
     @property
     def loads(self) -> list[float]:

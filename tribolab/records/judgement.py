@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,6 +46,11 @@ def judge(kind: str, value: float | None) -> str:
 def is_bad(run: Mapping[str, Any]) -> bool:
     """Return whether a run is excluded from the curves: failed, or rejected."""
     return run["status"] != "done" or run["quality"] in BAD
+
+
+def has_unknown_zero(checks: Iterable[Mapping[str, Any]]) -> bool:
+    """Return whether the zero of the friction force is in doubt: then U95 does not include it."""
+    return any(row["check"] == "zero_reference" and row["status"] == "suspect" for row in checks)
 
 
 def status_word(run: Mapping[str, Any]) -> str:
@@ -104,8 +109,10 @@ def why(run: Mapping[str, Any]) -> str:
     grave = [row for row in run["checks"] if row["status"] in _GRAVE and not row.get("decision")]
     if not grave:
         return ""
-    # a clipped signal triggers other checks, so clipping is named first
-    first = min(grave, key=lambda row: (_GRAVE.index(row["status"]), row["check"] != _CAUSE))
+    # a clipped signal triggers other checks; a run unlike its repeats may have any fault
+    order = [_CAUSE, *(row["check"] for row in grave if row["check"] == "repeats")]
+    order += [row["check"] for row in grave]
+    first = min(grave, key=lambda row: (_GRAVE.index(row["status"]), order.index(row["check"])))
     more = f" (and {len(grave) - 1} more)" if len(grave) > 1 else ""
     return f"{check_words(first['check'])}: {first['message']}{more}"
 

@@ -176,7 +176,8 @@ def _segment_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings)
         result = _ratio_friction(run, segments, settings)
     else:
         raise AnalysisError(
-            f"{name_of(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
+            f"{name_of(run)}: no friction force or coefficient was read: its column is missing or "
+            "empty"
         )
     bare = segments.drop_dims("omitted") if "omitted" in segments.dims else segments
     bare = bare.drop_vars([name for name in result.data_vars if name in bare])

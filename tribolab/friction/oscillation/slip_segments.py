@@ -261,7 +261,8 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
             yield SegmentSignal(part, time[part], values, raw, np.nan)
     else:
         raise AnalysisError(
-            f"{name_of(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
+            f"{name_of(run)}: no friction force or coefficient was read: its column is missing or "
+            "empty"
         )
 
 

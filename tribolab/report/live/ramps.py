@@ -7,16 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.core.wording import many
+from tribolab.core.wording import many, number
 from tribolab.figures.signals import LOOKED_AT, main_signal
-from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
+from tribolab.figures.spec import Axis, FigureSpec, KeyRow, KeyTable, Panel, Series
 from tribolab.records.parts import BAD, RunOutcome
+from tribolab.report.plain import plain_speed
 
 MAX_RUNS = 8
 _SPEEDS = "sliding_velocity", "set_speed"
 _BINS_PER_DECADE = 12
 _MIN_SAMPLES = 5  # smallest number of samples of a bin
 _MIN_DECADES = 0.3
+_HEADS = "Ramp", "Speeds", "Highest µ", "Lowest µ"
 _SMOOTHED = 50  # intervals in which the sign of acceleration is determined
 
 
@@ -56,8 +58,17 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
             series=tuple(series),
             width="whole",
             height=430,
+            numbers=KeyTable(_HEADS, tuple(map(_extremes, series))),
         ),
     ]
+
+
+def _extremes(leg: Series) -> KeyRow:
+    """Return the range of speed of a ramp, its highest and its lowest friction."""
+    high, low = int(np.argmax(leg.y)), int(np.argmin(leg.y))
+    cells = [leg.label, f"{plain_speed(min(leg.x))} to {plain_speed(max(leg.x))}"]
+    cells += [f"{number(leg.y[place])} at {plain_speed(leg.x[place])}" for place in (high, low)]
+    return KeyRow(tuple(cells), leg.surface, leg.medium)
 
 
 def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:

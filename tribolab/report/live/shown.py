@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tribolab.core.wording import force_text
 from tribolab.figures.page.still import first_series, still
-from tribolab.figures.spec import FigureSpec, legend, plain_data, written_labels
+from tribolab.figures.spec import FigureSpec, KeyTable, legend, plain_data, written_labels
 from tribolab.records.packed import deflated
 from tribolab.records.runs.traces import script_json
 
@@ -30,6 +30,8 @@ class ShownFigure:
         Compressed data as text that is valid in a script element.
     still
         Initial view as SVG, shown until the figure is drawn.
+    numbers
+        Key numbers to show below it.
     """
 
     id: str
@@ -46,6 +48,7 @@ class ShownFigure:
     labels: int
     packed: str
     still: str
+    numbers: KeyTable | None
 
 
 def shown_figures(figures: Iterable[FigureSpec]) -> tuple[ShownFigure, ...]:
@@ -69,4 +72,5 @@ def _shown(figure: FigureSpec) -> ShownFigure:
         written_labels(figure, legend(first_series(figure))),
         deflated(script_json(plain_data(figure)).encode()),
         still(figure),
+        figure.numbers,
     )

@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import statistics
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
-from tribolab.core.wording import many
-from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
-from tribolab.friction.statistics import NORMAL
-from tribolab.records.parts import number_of
+import numpy as np
+
+from tribolab.core.wording import load_text, many, number
+from tribolab.figures.spec import Axis, FigureSpec, KeyRow, KeyTable, Panel, Series, places
+from tribolab.friction.points.mean_of_repeats import mean_of_repeats
+from tribolab.records.parts import Row, RunOutcome, number_of
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.starts import starts_of
+from tribolab.records.wording import NORMAL, error_text
+from tribolab.report.live.curves import system_name
+
+_HEADS = "Condition", "Load", "Hold time (s)", "Static µ", "Kinetic µ", "Starts"
+_SAME_REST = 1.05  # largest ratio of rest times that count as equal
+
+
+class _Start(NamedTuple):
+    """Start of a run, its row and the rest before it [s]."""
+
+    outcome: RunOutcome
+    row: Row
+    rest: float
 
 
 def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
@@ -53,5 +70,54 @@ def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
             series=tuple(series),
             width="whole",
             height=430,
+            numbers=_numbers(chosen),
         )
     ]
+
+
+def _numbers(chosen: Sequence[tuple[RunOutcome, Sequence[Row]]]) -> KeyTable:
+    """Return static and kinetic friction after each rest; repeats are averaged."""
+    groups: dict[tuple[str, str, float, float], list[_Start]] = {}
+    starts = [
+        _Start(outcome, row, number_of(row, "waiting_time_s") or 0.0)
+        for outcome, rows in chosen
+        for row in rows
+    ]
+    key = "", "", 0.0, 0.0
+    for start in sorted(starts, key=lambda start: (*_system(start), start.rest)):
+        if _system(start) != key[:3] or start.rest > _SAME_REST * key[3]:
+            key = (*_system(start), start.rest)
+        groups.setdefault(key, []).append(start)
+    return KeyTable(_HEADS, tuple(map(_mean_row, groups.values())))
+
+
+def _system(start: _Start) -> tuple[str, str, float]:
+    return start.outcome.surface, start.outcome.medium, start.outcome.normal_force or 0.0
+
+
+def _mean_row(group: Sequence[_Start]) -> KeyRow:
+    """Return the means of starts after the same rest.
+
+    The zero is common to the repeats: their U95 is at least that of one start.
+    """
+    first = group[0].outcome
+    static, kinetic, own = (
+        _known(number_of(start.row, f"{name}friction_coefficient{end}") for start in group)
+        for name, end in (("static_", ""), ("", ""), ("static_", "_sem"))
+    )
+    u95 = NORMAL * float(np.median(own)) if own.size else 0.0
+    if static.size > 1:
+        u95 = max(u95, mean_of_repeats(static, np.full(static.size, np.nan)).u95)
+    cells = (
+        system_name(first.surface, first.medium, [start.outcome.name for start in group]),
+        load_text(first.normal_force, first.load_from),
+        number(statistics.fmean(start.rest for start in group)),
+        error_text(float(static.mean()), u95) if static.size else "–",
+        number(float(kinetic.mean())) if kinetic.size else "–",
+        str(len(group)),
+    )
+    return KeyRow(cells, first.surface, first.medium, first.normal_force)
+
+
+def _known(values: Iterable[float | None]) -> np.ndarray:
+    return np.array([value for value in values if value is not None], float)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from tribolab.core.wording import load_text
+from tribolab.figures.spec import KeyRow, KeyTable
 from tribolab.friction.points.mean_of_repeats import mean_of_repeats
-from tribolab.records.judgement import is_bad
+from tribolab.records.judgement import has_unknown_zero, is_bad
 from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
 from tribolab.records.runs.running_in_record import RunningIn, length_text
@@ -20,22 +21,6 @@ from tribolab.report.live.curves import system_name
 from tribolab.report.live.points import point_error
 from tribolab.report.page.in_words import by_speed, half_speed
 from tribolab.report.plain import plain_speed
-
-
-class KeyRow(NamedTuple):
-    """Row of cells in words, with labels for the choice of surface, medium and load."""
-
-    cells: tuple[str, ...]
-    surface: str = ""
-    medium: str = ""
-    load: float | None = None
-
-
-class KeyTable(NamedTuple):
-    """Heads and rows; the first cell of each row is its name."""
-
-    heads: tuple[str, ...]
-    rows: tuple[KeyRow, ...]
 
 
 def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
@@ -63,7 +48,7 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
             continue
         name = system_name(curve["surface"], curve["medium"], curve["runs"])
         cells = [name, load_text(curve["nominal_normal_force_N"], curve["load_from"])]
-        cells += [_at_speed(known[0])] if single else _extremes(known)
+        cells += [_at_speed(known[0]) + _zero(document, curve)] if single else _extremes(known)
         cells += [_stress(models.get(curve["name"]))] * bool(models)
         cells += [rough.get(curve["surface"], "–")] * bool(rough)
         labels = curve["surface"], curve["medium"], curve["nominal_normal_force_N"]
@@ -85,6 +70,11 @@ def _extremes(known: Sequence[Mapping[str, Any]]) -> list[str]:
 def _at_speed(row: Mapping[str, Any]) -> str:
     mu = error_text(row["friction_coefficient"], point_error(row, ()).size)
     return f"{mu} at {plain_speed(row['sliding_speed_m_s'])}"
+
+
+def _zero(document: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
+    runs = [run for run in document["runs"] if run["name"] in curve["runs"]]
+    return ", without zero" * any(has_unknown_zero(run["checks"]) for run in runs)
 
 
 def _stress(fit: Mapping[str, Any] | None) -> str:

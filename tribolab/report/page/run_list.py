@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import statistics
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.core.wording import MINUS
-from tribolab.records.judgement import is_bad, status_word, why
+from tribolab.records.judgement import check_words, is_bad, status_word, why
 from tribolab.records.wording import UNITS, error_text
 from tribolab.report.live.points import MAX_SPEED_RATIO, RunPoint, at_speed
 from tribolab.report.page.sparkline import spark_path
@@ -74,6 +74,10 @@ def listed_runs(
         means = {run["name"]: [_steady(run), *means[run["name"]]] for run in runs}
     off = _deviations(runs, means)
     shown = 0 if _STEADY in shown_as else _most_common_speed(list(means.values()))
+    suspect = [
+        {row["check"] for row in run["checks"] if row["status"] == "suspect"} for run in runs
+    ]
+    common = set.intersection(*suspect) if len(runs) > 1 else set()
     rows = []
     for place, run in enumerate(runs, start=1):
         name, unit = run["name"], UNITS.get(run["quantity"] or "", "")
@@ -82,10 +86,17 @@ def listed_runs(
             for mu, deviation in zip(means[name], off[name], strict=True)
         )
         spark = spark_path(traces[name]) if name in traces else ""
-        rows.append(ListedRun(run, place, _state(run), why(run), values, spark))
+        rows.append(ListedRun(run, place, _state(run), _reason(run, common), values, spark))
     order = sorted(rows, key=lambda row: _rank(row, off[row.run["name"]]))
     ranked = tuple(row._replace(worst=rank) for rank, row in enumerate(order))
     return RunList(ranked, shown_as, shown)
+
+
+def _reason(run: Mapping[str, Any], common: Collection[str]) -> str:
+    """Return the reason for a state, in short if it is common to all runs."""
+    reason = why(run)
+    name = reason.partition(":")[0]
+    return f"{name} (all runs)" if name in map(check_words, common) else reason
 
 
 def _state(run: Mapping[str, Any]) -> str:

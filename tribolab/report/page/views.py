@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from tribolab.figures.spec import KeyTable
 from tribolab.report.live.shown import ShownFigure
-from tribolab.report.page.key_numbers import (
-    KeyTable,
-    friction_numbers,
-    roughness_numbers,
-    settled_numbers,
-)
+from tribolab.report.page.key_numbers import friction_numbers, roughness_numbers, settled_numbers
 
 _TITLES = {
     "curve": "µ vs. speed",
@@ -58,7 +54,8 @@ def views(document: Mapping[str, Any], live: Sequence[ShownFigure]) -> list[View
             figures.setdefault(name, []).append(figure)
     friction = friction_numbers(document) if document["curves"] else None
     settled = settled_numbers(document)
-    numbers = {"distance": settled, "time": settled, "cycles": settled, "ramp": None}
+    numbers = {"distance": settled, "time": settled, "cycles": settled}
+    numbers |= {name: figures[name][0].numbers for name in ("ramp", "static") if name in figures}
     numbers["surfaces"] = roughness_numbers(document) if document["surfaces"] else None
     found = [
         View(name, title, tuple(figures[name]), numbers.get(name, friction))
