@@ -4,6 +4,7 @@ import os
 import shutil
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from campaigns import RUNS, copied, fingerprint
@@ -53,7 +54,7 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
 
     # copied and touched files are the same: read, and nothing is done
     elsewhere = copied(campaign, tmp_path / "elsewhere")
-    for path in (elsewhere.parent / "raw").rglob("*.csv"):
+    for path in filter(Path.is_file, elsewhere.parent.rglob("*")):
         path.touch()
     with monkeypatch.context() as guarded:
         guarded.setattr("tribolab.campaign.pipeline.process", refuse)
