@@ -77,7 +77,7 @@ def traces(document, outcome, count):
 def cards(outcome):
     """Return the figures of the answer's cards."""
     curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
-    return shown_figures(card_figures(FrictionOverSpeed(curves, {}, {}, {}, {}, ())))
+    return shown_figures(card_figures(FrictionOverSpeed(curves, {}, {}, {}, ())))
 
 
 def measure(page_file, profile):
@@ -91,7 +91,7 @@ def measure(page_file, profile):
     with chromium(profile) as browser:
         with browser.page(page_file) as page:
             acts = {
-                "sort": "document.querySelector('#runs-table [data-name=fastest] button').click()",
+                "sort": "document.querySelector('#runs-table [data-name=load] button').click()",
                 "search": "const f = document.querySelector('#runs input[type=search]');"
                 "f.value = '_0007'; f.dispatchEvent(new Event('input'))",
                 "open a run": "location.hash = '#run-7'; while (!document.querySelector("
