@@ -159,7 +159,8 @@ def folded_of(folder):
 def details_of(folder):
     """What stands under each run, as HTML."""
     folded = r'<details class="run.*?' + PACKED % ' class="packed"'
-    return [_unpacked(one) for one in re.findall(folded, page_of(folder), re.DOTALL)]
+    groups = re.findall(folded, page_of(folder), re.DOTALL)
+    return [run for one in groups for run in _unpacked(one).split("<!--next run-->")]
 
 
 def figures_of(folder):

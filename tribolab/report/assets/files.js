@@ -87,14 +87,16 @@
     ]);
   };
 
-  // What stands under a run is unpacked when it is opened.
+  // The details of a run are unpacked when it is opened, with those of the runs compressed together with it.
   report.unfold = async (details) => {
-    const packed = details.querySelector(":scope > script.packed");
-    if (!packed) return;
-    packed.remove();
+    const part = Number(details.dataset.part ?? 0), first = part ? document.getElementById(`run-${details.id.slice(4) - part}`) : details;
+    const packed = first.querySelector(":scope > script.packed");
+    if (!packed || details.unfolded) return;
+    details.unfolded = true;
     const place = document.createElement("div");
     try {
-      place.innerHTML = new TextDecoder().decode(await report.unpacked(packed.textContent));
+      packed.parts ??= report.unpacked(packed.textContent).then((bytes) => new TextDecoder().decode(bytes).split("<!--next run-->"));
+      place.innerHTML = (await packed.parts)[part];
     } catch {
       place.textContent = "This browser cannot unpack the details of a run; their numbers are in report.json and tables/.";
     }

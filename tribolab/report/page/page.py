@@ -5,6 +5,7 @@ The sections are listed in `tribolab.report.page.sections`, with instructions fo
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -30,14 +31,21 @@ if TYPE_CHECKING:
 
 _MAX_ROWS = 100  # rows in the list of runs; more are compressed and added on request
 _MAX_DOUBTS = 4  # most doubts on the first screen
+_TOGETHER = 8  # runs compressed together
+_BETWEEN = "<!--next run-->"  # as in assets/files.js
 RunDocuments = Callable[[], Iterable[Json]]
 
 
 class Detail(NamedTuple):
-    """Details of one run: its place from 1, and all other data compressed."""
+    """Details of one run: its place from 1, and all other data compressed.
+
+    A few runs are compressed together, as their details share most of their text: `packed` has them
+    all for the first, and is empty for the others; `part` counts them from 0.
+    """
 
     run: Json
     place: int
+    part: int
     packed: str
 
 
@@ -52,7 +60,7 @@ def write_page(
     """Write ``report.html`` with all its data into the results folder.
 
     The details of runs are compressed, and the page unpacks them on request. The page is written
-    piece by piece, with the details of only one run in memory.
+    piece by piece, with the details of only a few runs in memory.
 
     Parameters
     ----------
@@ -128,15 +136,20 @@ def _context(
     }
     template = environment(folder).get_template("run.html.j2")
 
+    def text(run: Json, place: int) -> str:
+        points = store.trace("run", run["name"])
+        trace: dict[str, str] | None = None
+        if points is not None:
+            key = Path(run["data_file"]).stem
+            trace = {"json": Markup(points.coarse), "fine": Markup(points.fine), "key": key}
+        return template.render(context, run=run, trace=trace, index=place)
+
     def details() -> Iterator[Detail]:
-        for place, run in enumerate(runs(), start=1):
-            points = store.trace("run", run["name"])
-            trace: dict[str, str] | None = None
-            if points is not None:
-                key = Path(run["data_file"]).stem
-                trace = {"json": Markup(points.coarse), "fine": Markup(points.fine), "key": key}
-            text = template.render(context, run=run, trace=trace, index=place)
-            yield Detail(run, place, deflated(text.encode()))
+        numbered = enumerate(runs(), start=1)
+        while group := list(itertools.islice(numbered, _TOGETHER)):
+            packed = deflated(_BETWEEN.join(text(run, place) for place, run in group).encode())
+            for part, (place, run) in enumerate(group):
+                yield Detail(run, place, part, "" if part else packed)
 
     return context | {"details": details}
 
