@@ -31,6 +31,7 @@ _FEWER = 1.3  # exponent of the share of points that fits: fewer points compress
 _FINEST = 24_000  # points of a signal available for zooming
 _POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
 _BYTES, _FULL_SIZE_RUNS = 1.25e6, 32  # of all traces together, up to so many runs
+_MIN_FINER = 3400  # smaller ones show hardly more than the points shown on opening
 _COARSE_SHARE = 0.3  # share for the points shown on opening
 
 
@@ -87,13 +88,13 @@ def trace_size(runs: int) -> tuple[int, int]:
     Examples
     --------
     >>> trace_size(5), trace_size(200), trace_size(2000)
-    ((2000, 109375), (517, 9667), (300, 3417))
+    ((2000, 109375), (366, 6835), (300, 3400))
     """
     runs = 1 << max(runs - 1, 0).bit_length()
     # with many runs the page grows, but more slowly than their number
-    each = _BYTES * max(1.0, (runs / _FULL_SIZE_RUNS) ** 0.5) / runs
+    each = _BYTES * max(1.0, (runs / _FULL_SIZE_RUNS) ** (1 / 3)) / runs
     points = _COARSE_SHARE * each / _POINT_BYTES
-    return int(np.clip(points, 300, 2000)), int((1 - _COARSE_SHARE) * each)
+    return int(np.clip(points, 300, 2000)), max(int((1 - _COARSE_SHARE) * each), _MIN_FINER)
 
 
 def decimated_trace(
