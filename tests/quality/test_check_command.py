@@ -266,3 +266,13 @@ def test_info_on_a_long_file_takes_an_excerpt_in_which_each_range_is_nearly_the_
     assert [line for line in part if line in whole] == [whole[0], *whole[2:]]
     estimated = int(part[1].split()[0])
     assert estimated == pytest.approx(rows, rel=0.01)
+
+    # a known instrument, whose second log is missing, or there
+    known = tmp_path / "k_force.csv"
+    head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N],V [mm/s]\n"
+    known.write_text(head + "".join(lines))
+    part = file_info.file_lines(known)
+    assert "estimated" in part[2] and "companion log: k_motion.csv is not there" in part[-1]
+    (tmp_path / "k_motion.csv").write_text("no numbers\n")
+    part = file_info.file_lines(known)
+    assert "estimated" not in part[2] and "companion log: refused" in "".join(part)

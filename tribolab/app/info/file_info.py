@@ -90,7 +90,8 @@ def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> 
     if whole or RunAttributes.from_attrs(log.attrs).time_source != "recorded":
         return []
     header = part.lines - facts["rows"]
-    facts["rows"], facts["longest_interval_s"] = part.lines_of_whole - header, None
+    rows = part.lines_of_whole - header
+    facts["rows"], facts["longest_interval_s"] = round(rows, 3 - len(str(rows))), None
     lines = run_lines(facts)
     share = part.file.stat().st_size / path.stat().st_size
     lines.insert(
@@ -98,7 +99,8 @@ def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> 
         f"  the number of rows is estimated, and ranges are of samples: {share:.1%} of the file "
         "was read (`tribolab check` reads all)",
     )
-    return lines + missing_lines(facts, log.columns) + _doubts(log.columns)
+    more = [] if drafted else companion_lines(describe_companion(path, instrument, log))
+    return lines + (more or missing_lines(facts, log.columns)) + _doubts(log.columns)
 
 
 def _modulus_lines(path: Path) -> list[str]:

@@ -76,8 +76,10 @@ def describe_companion(
 
 
 def has_companion(path: Path, instrument: str | Path | None = None) -> bool:
-    """Whether the instrument that wrote a main log writes a second log, too."""
-    return _pairing(path, instrument) is not None
+    """Whether the second log that belongs to a main log exists."""
+    dialect = _pairing(path, instrument)
+    other = None if dialect is None else companion_path(path, dialect)
+    return other is not None and other.exists()
 
 
 def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:
