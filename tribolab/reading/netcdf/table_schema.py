@@ -4,22 +4,100 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from tribolab.core.errors import ConfigError, ReadError, UnitError, nearest, shown
-from tribolab.reading.netcdf.schema_violations import Broken, Violations
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.schema_folder import schema_folder
 from tribolab.units.conversion import conversion
 
 _SCHEMAS = ("run", "scan")
 _TYPES = {"number": "fiub", "integer": "fiub", "boolean": "b", "string": "OUST"}
+_SCREEN = 20  # violations shown
+
+
+class Violation(NamedTuple):
+    """Value that violates a rule; `row` counts from 0 and is None for a whole column."""
+
+    row: int | None
+    column: str
+    value: object
+    constraint: str
+    limit: object
+
+    def __str__(self) -> str:
+        """Return the violation as one line."""
+        if self.constraint == "missing column":
+            return f"column '{shown(self.column)}' is missing"
+        where = f"column '{shown(self.column)}'" + ("" if self.row is None else f", row {self.row}")
+        if self.constraint == "unique":
+            return f"{where}: {_short(self.value)} stands there before"
+        if self.constraint == "required":
+            return f"{where}: a value is required"
+        return f"{where}: {_short(self.value)}, but {self.constraint} is {_short(self.limit)}"
+
+
+class _Broken(NamedTuple):
+    """All violations of one rule in one column."""
+
+    rows: Any
+    column: str
+    values: Any
+    constraint: str
+    limit: object
+
+    def table(self, most: int | None = None) -> pd.DataFrame:
+        """Return the first violations as rows; by default all."""
+        limit = str(self.limit) if isinstance(self.limit, list | tuple) else self.limit
+        parts = (self.rows[:most], self.column, self.values[:most], self.constraint, limit)
+        return pd.DataFrame(dict(zip(Violation._fields, parts, strict=True)), dtype=object)
+
+
+class Violations(NamedTuple):
+    """All violations, by rule; empty and false if the data conform."""
+
+    broken: tuple[_Broken, ...]
+
+    def __bool__(self) -> bool:
+        """Whether any rule is broken."""
+        return bool(self.broken)
+
+    @property
+    def total(self) -> int:
+        """Number of violations."""
+        return sum(len(broken.rows) for broken in self.broken)
+
+    def first(self, number: int = _SCREEN) -> list[Violation]:
+        """Return the first violations, at least one for each rule."""
+        share = max(number // max(len(self.broken), 1), 1)
+        rows = (row for rule in self.broken for row in rule.table(share).itertuples(index=False))
+        return [Violation._make(row) for row in islice(rows, number)]
+
+    def table(self) -> pd.DataFrame:
+        """Return every violation as a row: row, column, value, constraint, limit."""
+        parts = [rule.table() for rule in self.broken]
+        empty = pd.DataFrame(columns=Violation._fields)
+        return pd.concat(parts, ignore_index=True) if parts else empty
+
+    def __str__(self) -> str:
+        """Return the first violations, a line each, and the number of further ones."""
+        lines = list(map(str, self.first()))
+        if more := self.total - len(lines):
+            lines.append(f"and {more:,} more".replace(",", " "))
+        return "\n".join(lines) or "as the schema says"
+
+
+def _short(value: object) -> str:
+    if isinstance(value, float | np.floating):
+        return f"{value:.6g}"
+    return "no value" if value is None else str(value)
 
 
 def load_schema(schema: str | Path | Mapping[str, Any]) -> Mapping[str, Any]:
@@ -84,21 +162,18 @@ def validate(
     rules = load_schema(schema)
     key = rules.get("primaryKey", [])
     key = [key] if isinstance(key, str) else list(key)
-    empty = frozenset(rules.get("missingValues", [""]))
-    broken: list[Broken] = []
+    empty = list(rules.get("missingValues", [""]))
+    found: list[_Broken] = []
     for field in rules["fields"]:
-        constraints = dict(field.get("constraints", {}))
-        if field["name"] in key:
-            constraints["required"] = True
-        if key == [field["name"]]:
-            constraints["unique"] = True
-        values, unit = _column(data, field["name"])
-        if values is None:
-            if constraints.get("required"):
-                broken.append(_whole(field, "missing column", None, []))
-            continue
-        broken += _field_broken(field, constraints, values.ravel(), unit, empty)
-    return Violations(tuple(broken))
+        name, constraints = field["name"], dict(field.get("constraints", {}))
+        constraints |= {"required": True} if name in key else {}
+        constraints |= {"unique": True} if key == [name] else {}
+        values, unit = _column(data, name)
+        if values is not None:
+            found += _broken(field, constraints, values.ravel(), unit, empty)
+        elif constraints.get("required"):
+            found.append(_Broken([None], name, [None], "missing column", None))
+    return Violations(tuple(found))
 
 
 def _column(data: xr.Dataset | pd.DataFrame, name: str) -> tuple[np.ndarray | None, str | None]:
@@ -114,105 +189,64 @@ def _column(data: xr.Dataset | pd.DataFrame, name: str) -> tuple[np.ndarray | No
     return None, None
 
 
-def _whole(field: Mapping[str, Any], constraint: str, limit: Any, values: list[Any]) -> Broken:
-    return Broken(field["name"], constraint, limit, np.empty(0, dtype=np.intp), values)
-
-
-def _field_broken(
+def _broken(
     field: Mapping[str, Any],
     constraints: Mapping[str, Any],
     values: np.ndarray,
     unit: str | None,
-    empty: frozenset[str],
-) -> list[Broken]:
-    kind = field.get("type", "string")
+    empty: list[str],
+) -> Iterator[_Broken]:
+    """Yield what violates the rules of a column; of a wrong unit or type nothing else."""
+    name, kind = field["name"], field.get("type", "string")
     if unit is not None and "unit" in field and not _same_unit(unit, field["unit"]):
-        return [_whole(field, "unit", field["unit"], [unit])]
-    numeric = kind in ("number", "integer")
-    if numeric and values.dtype.kind == "O":
-        values, odd = _as_numbers(values, empty)
-        if odd.any():
-            rows = np.flatnonzero(odd)
-            return [Broken(field["name"], "type", kind, rows, values[rows])]
-        values = values.astype(float)
-    if kind in _TYPES and values.dtype.kind not in _TYPES[kind]:
-        return [_whole(field, "type", kind, [str(values.dtype)])]
-    broken = []
-
-    def report(constraint: str, limit: Any, wrong: np.ndarray) -> None:
-        rows = np.flatnonzero(wrong)
-        if rows.size:
-            broken.append(Broken(field["name"], constraint, limit, rows, values[rows]))
-
-    if kind == "integer" and values.dtype.kind == "f" and not _are_whole(values):
-        report("type", "integer", np.isfinite(values) & (values != np.round(values)))
-    for constraint, limit in constraints.items():
-        wrong = _CHECKS[constraint](values, limit, empty)
-        if wrong is not None:
-            report(constraint, limit, wrong)
-    return broken
+        yield _Broken([None], name, [unit], "unit", field["unit"])
+        return
+    none = _is_missing(values, empty)
+    odd = np.zeros(values.size, dtype=bool)
+    if kind in ("number", "integer") and values.dtype.kind == "O":
+        numbers = pd.to_numeric(pd.Series(values), errors="coerce").to_numpy(dtype=float)
+        odd = np.isnan(numbers) & ~none
+        values = values if odd.any() else numbers
+    if kind in _TYPES and values.dtype.kind not in _TYPES[kind] and not odd.any():
+        yield _Broken([None], name, [str(values.dtype)], "type", kind)
+        return
+    checks: dict[str, tuple[Any, np.ndarray]] = {"type": (kind, odd)}
+    if not odd.any():
+        if kind == "integer" and values.dtype.kind == "f":
+            checks["type"] = kind, np.isfinite(values) & (values != np.round(values))
+        for constraint, limit in constraints.items():
+            checks[constraint] = limit, _CHECKS[constraint](values, limit, none)
+    for constraint, (limit, wrong) in checks.items():
+        if (rows := np.flatnonzero(wrong)).size:
+            yield _Broken(rows, name, values[rows], constraint, limit)
 
 
-def _as_numbers(values: np.ndarray, empty: frozenset[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Return values as numbers, and a mask of those that are neither numbers nor missing."""
-    numbers = pd.to_numeric(pd.Series(values), errors="coerce").to_numpy()
-    none = pd.isna(values) | np.isin(values.astype(str), list(empty))
-    odd = np.isnan(numbers) & ~none
-    return (values if odd.any() else numbers), odd
-
-
-def _are_whole(values: np.ndarray) -> bool:
-    return bool((values == np.round(values)).all())
-
-
-def _limit_check(
-    limit_of: Callable[[np.ndarray], Any], wrong: Callable[..., Any]
-) -> Callable[..., Any]:
-    """Return a check that compares the extreme first, as most data are within the limits."""
-
-    def check(values: np.ndarray, limit: Any, _: frozenset[str]) -> np.ndarray | None:
-        if values.dtype.kind == "f" and values.size:
-            extreme = limit_of(values)  # NaN is ignored
-            if not wrong(extreme, limit):
-                return None
-        return wrong(values, limit)
-
-    return check
-
-
-def _missing(values: np.ndarray, wanted: bool, empty: frozenset[str]) -> np.ndarray | None:
-    if not wanted or values.dtype.kind in "iub":
-        return None
-    if values.dtype.kind == "f":
+def _is_missing(values: np.ndarray, empty: list[str]) -> np.ndarray:
+    if values.dtype.kind in "fiub":
         return np.isnan(values)
-    return pd.isna(values) | np.isin(values.astype(str), list(empty))
+    return np.asarray(pd.isna(values) | np.isin(values.astype(str), empty))
 
 
-def _repeated(values: np.ndarray, wanted: bool, _: frozenset[str]) -> np.ndarray | None:
-    if not wanted or (values.dtype.kind in "fiu" and bool((values[1:] > values[:-1]).all())):
-        return None
-    series = pd.Series(values)
-    return (series.duplicated() & series.notna()).to_numpy()
+def _repeated(values: np.ndarray, wanted: bool, none: np.ndarray) -> np.ndarray:
+    rises = values.dtype.kind in "fiu" and bool((values[1:] > values[:-1]).all())
+    return (
+        none & False if rises or not wanted else pd.Series(values).duplicated().to_numpy() & ~none
+    )
 
 
-def _no_match(values: np.ndarray, pattern: str, empty: frozenset[str]) -> np.ndarray:
+def _no_match(values: np.ndarray, pattern: str, none: np.ndarray) -> np.ndarray:
     text = pd.Series(values).astype("string")
     return (~text.str.fullmatch(pattern).fillna(True)).to_numpy(dtype=bool)
 
 
-def _not_listed(values: np.ndarray, listed: Sequence[Any], _: frozenset[str]) -> np.ndarray:
-    series = pd.Series(values)
-    return (~series.isin(list(listed)) & series.notna()).to_numpy()
-
-
-_CHECKS: Mapping[str, Callable[[np.ndarray, Any, frozenset[str]], np.ndarray | None]] = {
-    "required": _missing,
+_CHECKS: Mapping[str, Callable[[np.ndarray, Any, np.ndarray], np.ndarray]] = {
+    "required": lambda values, wanted, none: none & wanted,
     "unique": _repeated,
-    "minimum": _limit_check(np.fmin.reduce, np.less),
-    "maximum": _limit_check(np.fmax.reduce, np.greater),
-    "exclusiveMinimum": _limit_check(np.fmin.reduce, np.less_equal),
-    "exclusiveMaximum": _limit_check(np.fmax.reduce, np.greater_equal),
-    "enum": _not_listed,
+    "minimum": lambda values, limit, none: values < limit,
+    "maximum": lambda values, limit, none: values > limit,
+    "exclusiveMinimum": lambda values, limit, none: values <= limit,
+    "exclusiveMaximum": lambda values, limit, none: values >= limit,
+    "enum": lambda values, listed, none: ~np.isin(values, listed) & ~none,
     "pattern": _no_match,
 }
 
