@@ -15,10 +15,9 @@ from hypothesis import strategies as st
 
 import tribolab as tl
 from tribolab.core.errors import ReadError, TribolabError
-from tribolab.reading.netcdf.attributes import encoded
 from tribolab.reading.netcdf.netcdf import read_groups, read_netcdf, write_groups, write_netcdf
 from tribolab.reading.netcdf.seal import seal, unseal
-from tribolab.reading.netcdf.storage import CHUNK, storage
+from tribolab.reading.netcdf.storage import CHUNK, encoded, storage
 
 ATTRIBUTES = st.dictionaries(
     st.from_regex(r"[a-z][a-z0-9_]{0,10}", fullmatch=True).filter(lambda k: k != "units"),

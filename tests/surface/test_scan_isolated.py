@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tribolab.reading.scan_files import read_scans
-from tribolab.reading.scans.isolated import take_isolated
+from tribolab.reading.scans.sentinels import take_isolated
 from tribolab.surface.form import remove_form
 
 

@@ -135,7 +135,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
     from tribolab.reading.moduli import is_modulus_file
-    from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
+    from tribolab.reading.unknown.proposal.answers import leave_out_doubtful
 
     if is_modulus_file(path):
         what = "a table of a modulus over frequency: no friction is in it"
@@ -171,7 +171,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
 def left_open(draft: Draft) -> ReadError | None:
     """Return what a file leaves open that a run or profile needs; None if it says all of it."""
     # late: starting stays quick
-    from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
+    from tribolab.reading.unknown.proposal.answers import leave_out_doubtful
     from tribolab.reading.unknown.proposal.questions import (
         GuessedError,
         lacks_friction,
@@ -251,7 +251,7 @@ def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft | ReadError:
 
 def _guess_attrs(path: Path) -> dict[str, str]:
     # late: starting stays quick
-    from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
+    from tribolab.reading.unknown.proposal.answers import leave_out_doubtful
     from tribolab.reading.unknown.proposal.questions import how_to_keep, without_unit_and_missed
 
     attrs = {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}

@@ -7,12 +7,12 @@ from tribolab.app.questions.typed import (
 )
 from tribolab.core.errors import ReadError
 from tribolab.reading.interpret.amounts import Amount
-from tribolab.reading.unknown.derivations.candidate_lines import (
+from tribolab.reading.unknown.derivations.derive import what_follows
+from tribolab.reading.unknown.derivations.missing_inputs import lacking
+from tribolab.reading.unknown.derivations.stated_lines import (
     candidate_lines,
     likely_value,
 )
-from tribolab.reading.unknown.derivations.derive import what_follows
-from tribolab.reading.unknown.derivations.missing_inputs import lacking
 from tribolab.reading.unknown.model import Agreed
 from tribolab.reading.unknown.proposal.draft import Draft
 

@@ -28,13 +28,13 @@ from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.reading.interpret.unit_texts import converts, is_unit
 from tribolab.reading.scans.extent import likely_height_unit
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
-from tribolab.reading.unknown.derivations.candidate_lines import (
+from tribolab.reading.unknown.derivations.derive import what_follows
+from tribolab.reading.unknown.derivations.missing_inputs import lacking
+from tribolab.reading.unknown.derivations.stated_lines import (
     amount_of,
     candidate_lines,
     likely_value,
 )
-from tribolab.reading.unknown.derivations.derive import what_follows
-from tribolab.reading.unknown.derivations.missing_inputs import lacking
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason, Understood, other_units
 from tribolab.reading.unknown.proposal.answers import column_of, corrected, fits

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.python_reader import PythonReader
+from tribolab.reading.raw.containers.declared_records import read_records
 from tribolab.reading.raw.containers.read import read_container
-from tribolab.reading.raw.containers.records import read_records
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
 from tribolab.reading.raw.readers import read_with
 from tribolab.reading.text.cells import split_name

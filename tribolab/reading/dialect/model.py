@@ -24,8 +24,7 @@ from tribolab.reading.dialect.file_layout import (
     Text,
 )
 from tribolab.reading.dialect.formula import names_in, parse_formula
-from tribolab.reading.dialect.speed_rule import Speed
-from tribolab.reading.dialect.time_rule import Time
+from tribolab.reading.dialect.time_rule import Speed, Time
 from tribolab.reading.dialect.uncertainty import Uncertainty
 from tribolab.reading.dialect.value_rule import Value
 from tribolab.units.conversion import positive

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from tribolab.reading.dialect.column_rule import Column
 from tribolab.reading.dialect.model import Dialect
-from tribolab.reading.dialect.speed_rule import Speed
-from tribolab.reading.dialect.time_rule import Time
+from tribolab.reading.dialect.time_rule import Speed, Time
 from tribolab.reading.raw.clocks import INTERVAL_PATTERN
 from tribolab.reading.raw.readers import answers, read_with, source_of
 from tribolab.units.quantities import QUANTITIES

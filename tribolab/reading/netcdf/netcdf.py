@@ -15,9 +15,8 @@ import xarray as xr
 from tribolab.arrays.chunks import pieces
 from tribolab.arrays.scratch import is_long, room
 from tribolab.core.errors import ReadError, TribolabError, shown
-from tribolab.reading.netcdf.attributes import decoded
 from tribolab.reading.netcdf.seal import check_seal, seal, unseal
-from tribolab.reading.netcdf.storage import write_into
+from tribolab.reading.netcdf.storage import decoded, write_into
 from tribolab.reading.netcdf.stored import read_plain
 from tribolab.reading.raw.opening import isolated, report_damage
 from tribolab.reading.raw.source import check_regular

@@ -1,11 +1,12 @@
 """Writing of datasets into an open netCDF file: first all definitions, then all data.
 
 The library writes the definitions to the disk whenever data follow them; variable by variable that
-takes longer than writing the bytes of a run.
+takes longer than writing the bytes of a run. Unsupported attributes become JSON text.
 """
 
 from __future__ import annotations
 
+import json
 import zlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -14,8 +15,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.arrays.chunks import pieces
-from tribolab.core.untyped import Arguments
-from tribolab.reading.netcdf.attributes import encoded
+from tribolab.core.untyped import Arguments, Json
 
 if TYPE_CHECKING:
     import netCDF4
@@ -147,3 +147,63 @@ def _sample(values: np.ndarray) -> np.ndarray:
     if flat.size > _BLOCKS * _BLOCK:
         flat = np.concatenate([flat[start : start + _BLOCK] for start in starts])
     return np.ascontiguousarray(flat).view(np.uint8).reshape(flat.size, -1)
+
+
+_MARK, _TUPLE = "json:", "json-tuple:"
+
+
+def encoded(attrs: Mapping[Any, Any]) -> Json:
+    """Return attributes in types that netCDF supports.
+
+    True, False, None, dicts and lists become JSON text with the prefix ``json:``, tuples with
+    ``json-tuple:``.
+
+    Examples
+    --------
+    >>> encoded({"trim": 0.1, "known": None})
+    {'trim': 0.1, 'known': 'json:null'}
+    """
+    return {str(name): _encode(value) for name, value in attrs.items()}
+
+
+def decoded(attrs: Mapping[Any, Any]) -> Json:
+    """Return the original attributes; inverse of `encoded`.
+
+    Examples
+    --------
+    >>> decoded({"trim": 0.1, "known": "json:null"})
+    {'trim': 0.1, 'known': None}
+    """
+    return {str(name): _decode(value) for name, value in attrs.items()}
+
+
+def _encode(value: Any) -> Any:
+    if isinstance(value, str):
+        # text that happens to begin with the prefix must be restored as text
+        return _MARK + json.dumps(value) if value.startswith((_MARK, _TUPLE)) else value
+    if isinstance(value, np.bool_):
+        value = bool(value)
+    if isinstance(value, np.ndarray | np.generic):
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return value
+    mark = _TUPLE if isinstance(value, tuple) else _MARK
+    return mark + json.dumps(value, ensure_ascii=False, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    return str(value)
+
+
+def _decode(value: Any) -> Any:
+    if isinstance(value, str) and value.startswith(_TUPLE):
+        return tuple(json.loads(value.removeprefix(_TUPLE)))
+    if isinstance(value, str):
+        return json.loads(value.removeprefix(_MARK)) if value.startswith(_MARK) else value
+    if isinstance(value, np.integer):
+        return int(value)
+    if isinstance(value, np.floating):
+        return float(value)
+    return value

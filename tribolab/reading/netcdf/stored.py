@@ -14,8 +14,7 @@ import xarray as xr
 
 from tribolab.arrays.scratch import is_long
 from tribolab.core.untyped import Json
-from tribolab.reading.netcdf.attributes import decoded
-from tribolab.reading.netcdf.storage import COORDINATES, ORDERS
+from tribolab.reading.netcdf.storage import COORDINATES, ORDERS, decoded
 
 if TYPE_CHECKING:
     import netCDF4

@@ -14,8 +14,8 @@ from tribolab.core.provenance import CONVENTIONS, as_text, history_line
 from tribolab.core.untyped import Json
 from tribolab.reading.clocks.clock import join_clocks, mended_time, recorded_at, set_time
 from tribolab.reading.content.model import Content
-from tribolab.reading.content.newest_first import oldest_first
 from tribolab.reading.content.read_file import read_content
+from tribolab.reading.content.steps import oldest_first
 from tribolab.reading.content.values import add_assumed, single_values, step_values, tell_assumed
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 from tribolab.reading.dialect.find import Dialect
@@ -25,7 +25,7 @@ from tribolab.reading.dialect.text_form import as_written
 from tribolab.reading.dialect.zero_reading import free_while_zeroed, take_zeros, zeros_of_derived
 from tribolab.reading.raw.source import read_unchanged
 from tribolab.reading.runs.derived import add_derived
-from tribolab.reading.runs.force_consistency import keep_forces_that_agree
+from tribolab.reading.runs.force_ratio import keep_forces_that_agree
 from tribolab.reading.runs.row_counts import row_attributes
 from tribolab.reading.runs.speed import add_speed, keep_settings
 from tribolab.reading.runs.two_rates import sampled_together

@@ -31,7 +31,7 @@ from tribolab.reading.raw.source import check_regular
 from tribolab.reading.scans.extent import measured_part, refuse_impossible
 from tribolab.reading.scans.formats.undescribed import read_undescribed
 from tribolab.reading.scans.grid import even, gridded
-from tribolab.reading.scans.isolated import take_isolated
+from tribolab.reading.scans.sentinels import take_isolated
 from tribolab.reading.text.first_bytes import File, peek, results_error
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp

@@ -1,4 +1,4 @@
-"""Binary numbers after a text header that declares them."""
+"""Binary records: declared by a text header before them, or described by a dialect."""
 
 from __future__ import annotations
 
@@ -236,3 +236,32 @@ def _settings_in(text: str) -> list[Setting]:
         elif line.strip():
             found.append(Setting("", line))
     return found
+
+
+def read_records(path: Path, record: np.dtype[np.void], offset: int) -> RawFile:
+    """Read the records of a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    record
+        Type of a record.
+    offset
+        Bytes before the first record.
+
+    Raises
+    ------
+    ReadError
+        If the file is shorter than one record.
+    """
+    size = path.stat().st_size - offset
+    if size < record.itemsize:
+        raise ReadError(
+            f"the file has {max(size, 0)} bytes behind its header, a record has {record.itemsize}",
+            where=path,
+        )
+    rows = np.memmap(path, record, "r", offset, shape=size // record.itemsize)
+    names = record.names or ()
+    columns = tuple(RawColumn(name, None, rows[name], path=name) for name in names)
+    return RawFile(path, "binary", (RawTable("", columns),))

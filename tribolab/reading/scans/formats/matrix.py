@@ -19,7 +19,7 @@ from tribolab.reading.raw.missing_marks import Marked, measurable, take_marks
 from tribolab.reading.scans.formats.named_units import unit_remedy
 from tribolab.reading.scans.formats.profilometers import MissingUnitError
 from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range, unit_of_resolution
-from tribolab.reading.scans.stated_missing import take_stated
+from tribolab.reading.scans.sentinels import take_stated
 from tribolab.units.conversion import conversion
 
 _HEAD = 1 << 20  # bytes in which a matrix must begin

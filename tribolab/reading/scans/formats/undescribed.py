@@ -11,14 +11,13 @@ from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook, refuse_cut_short
 from tribolab.reading.raw.unpacked import ZIP, is_workbook, of_the_file, unpacked
 from tribolab.reading.scans.formats.arrays import read_scan_arrays
+from tribolab.reading.scans.formats.converted import as_standard, is_sdf_draft, is_sur, plain_sur
 from tribolab.reading.scans.formats.gauges import is_gauge, read_gauge
 from tribolab.reading.scans.formats.matrix import read_matrix
 from tribolab.reading.scans.formats.named_arrays import has_arrays, is_npz
 from tribolab.reading.scans.formats.named_units import units_in_name
 from tribolab.reading.scans.formats.nanoscope import is_nanoscope, read_nanoscope
 from tribolab.reading.scans.formats.profilometers import MissingUnitError, read_foreign
-from tribolab.reading.scans.formats.sdf import as_standard, is_sdf_draft
-from tribolab.reading.scans.formats.sur import is_sur, plain_sur
 from tribolab.reading.scans.formats.surfer import is_surfer, read_surfer
 from tribolab.reading.scans.formats.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.reading.scans.formats.zygo_xyz import is_zygo_xyz, read_zygo_xyz

@@ -1,20 +1,21 @@
-"""Settings of the clock in a drafted dialect: restarts, and single rows out of order."""
+"""Settings of the clock in a drafted dialect: restarts, rows out of order, or none in results."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from tribolab.arrays.medians import median
 from tribolab.reading.clocks.faults import find_faults, rows_at_fault
-from tribolab.reading.content.newest_first import is_newest_first
+from tribolab.reading.content.steps import is_newest_first
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, plain_words
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, turns_of
 from tribolab.reading.unknown.columns.unit_and_sign import IN_SECONDS
-from tribolab.reading.unknown.model import proceeds_by_seconds
+from tribolab.reading.unknown.model import DraftColumn, proceeds_by_seconds
 from tribolab.units.quantities import unit_conversion
 
 if TYPE_CHECKING:
@@ -129,3 +130,28 @@ def _fill_one_interval(time: np.ndarray, bad: np.ndarray) -> bool:
         return False
     span = (time[rows + 1] - time[rows - 1]) / median(np.diff(time))
     return bool((~bad[rows + 1] & ~bad[rows - 1] & (np.abs(span - 2) < 0.5)).all())
+
+
+_MAX_ROWS = 400  # rows
+_MIN_ROWS = 3
+_RISE = 1.02  # from speed to speed
+_SWEEP = 8  # rows of a sweep up or down, at least, where there are several
+
+
+def are_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
+    """Whether every row is of another speed than its neighbours, in sweeps up and down."""
+    held = {column.quantity: column for column in columns if column.used}
+    speeds = ("sliding_velocity", "rotation_speed", "rolling_speed")
+    column = next((held[name] for name in speeds if name in held), None)
+    if column is None or not _MIN_ROWS <= len(numbers) <= _MAX_ROWS:
+        return False
+    size = np.abs(numbers[:, column.place - 1])
+    size = size[np.isfinite(size)]
+    if size.size < _MIN_ROWS or not (size > 0).all():
+        return False
+    steps = np.log(size[1:] / size[:-1])
+    way = np.sign(steps)
+    turns = np.flatnonzero(way[1:] != way[:-1])
+    # the last speed of one sweep may be the first of the next
+    held_on = np.abs(steps) < np.log(_RISE)
+    return bool(turns.size <= size.size / _SWEEP) and int(held_on.sum()) <= turns.size / 2

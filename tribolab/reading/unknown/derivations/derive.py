@@ -10,10 +10,10 @@ import numpy as np
 
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, Given, derive
-from tribolab.reading.unknown.derivations.candidate_lines import find_stated_load
 from tribolab.reading.unknown.derivations.known_amounts import KnownRun, find_known
 from tribolab.reading.unknown.derivations.model import SAYS_FRICTION, SAYS_LOAD, Follows, Source
 from tribolab.reading.unknown.derivations.speed import add_speed
+from tribolab.reading.unknown.derivations.stated_lines import find_stated_load
 from tribolab.reading.unknown.header.stroke_settings import stated_strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood

@@ -13,7 +13,7 @@ from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.unknown.columns.cells import Cells, read_cells
-from tribolab.reading.unknown.columns.clock import find_clock, in_seconds, summed
+from tribolab.reading.unknown.columns.clock import are_points, find_clock, in_seconds, summed
 from tribolab.reading.unknown.columns.coefficient import disagreement, force_or_ratio
 from tribolab.reading.unknown.columns.dates import take_dates
 from tribolab.reading.unknown.columns.heights import (
@@ -29,14 +29,12 @@ from tribolab.reading.unknown.columns.proven import (
     add_unit_of_stroke,
     proven,
 )
-from tribolab.reading.unknown.columns.results_table import are_points
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.sign_against_motion import against_motion
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES
-from tribolab.reading.unknown.derivations.gains import find_gain
 from tribolab.reading.unknown.derivations.inclined_contact import guesses_of_inclined
 from tribolab.reading.unknown.derivations.known_amounts import loads_that_add
-from tribolab.reading.unknown.derivations.nodata_values import take_stated_missing
+from tribolab.reading.unknown.derivations.stated_lines import find_gain, take_stated_missing
 from tribolab.reading.unknown.derivations.two_bodies import (
     exclude_surface_speeds,
     find_surface_speeds,

@@ -16,14 +16,17 @@ from tribolab.reading.numbers import escaped
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, radius_of, torque_of, turns_of
-from tribolab.reading.unknown.derivations.candidate_lines import confirmed_value, find_stated_load
-from tribolab.reading.unknown.derivations.gains import find_gain
 from tribolab.reading.unknown.derivations.inclined_contact import (
     axial_force_of,
     find_inclined,
     radius_of_ball,
 )
 from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Known, Source
+from tribolab.reading.unknown.derivations.stated_lines import (
+    confirmed_value,
+    find_gain,
+    find_stated_load,
+)
 from tribolab.reading.unknown.derivations.two_bodies import (
     Pair,
     find_surface_speeds,

@@ -16,8 +16,8 @@ from tribolab.reading.unknown.columns.rotating_parts import (
     unscaled_torque_of,
 )
 from tribolab.reading.unknown.derivations.derive import held_quantities
-from tribolab.reading.unknown.derivations.gains import column_in_volts
 from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Follows
+from tribolab.reading.unknown.derivations.stated_lines import column_in_volts
 from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
 
 

@@ -12,9 +12,9 @@ from tribolab.reading.interpret.derive import Derivation, derive
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
 from tribolab.reading.runs.stroke_speed import DENSEST
-from tribolab.reading.unknown.derivations.candidate_lines import confirmed_value
 from tribolab.reading.unknown.derivations.known_amounts import KnownRun, is_steady
 from tribolab.reading.unknown.derivations.model import DraftedFormula, Follows, Source, SpeedBy
+from tribolab.reading.unknown.derivations.stated_lines import confirmed_value
 from tribolab.reading.unknown.header.run_amounts import stated_rotation
 from tribolab.reading.unknown.header.settings import text_settings
 from tribolab.reading.unknown.header.stroke_settings import Strokes

@@ -5,28 +5,25 @@ Their columns are laid out as a table below a line of names, with their numbers 
 
 from __future__ import annotations
 
+import datetime as dt
+import re
 from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.core.errors import ReadError
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.content.containers import seconds_of
 from tribolab.reading.dialect.containers import name_and_unit
+from tribolab.reading.lexicon.lexicon import known_words
 from tribolab.reading.raw.clocks import INTERVAL_PATTERN, OneClock, on_one_clock
 from tribolab.reading.raw.containers.read import CONTAINERS, read_container
-from tribolab.reading.raw.containers.workbook import read_sheet
+from tribolab.reading.raw.containers.workbook import read_sheet, sheets_of
 from tribolab.reading.raw.model import RawColumn, RawFile, Setting, text_of
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.text.first_bytes import File
-from tribolab.reading.unknown.layout.container_column import (
-    ROWS,
-    HeldColumn,
-    better_name,
-    one_of_each,
-    others_alike,
-)
-from tribolab.reading.unknown.layout.header import Block, Heading
-from tribolab.reading.unknown.layout.sheets import main_sheet
+from tribolab.reading.unknown.layout.header import Block, Heading, names_any
 from tribolab.reading.unknown.layout.text_layout import Held, Layout
 from tribolab.reading.unknown.model import Understood
 
@@ -158,3 +155,119 @@ def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -
     if held.increment and understood.kind == "run" and not timed:
         understood = understood._replace(rate_pattern=INTERVAL_PATTERN, rate_unit="s")
     return understood._replace(columns=tuple(named), missing=())
+
+
+ROWS = 20_000  # rows looked at
+_TOLD = 4  # other tables that are named
+
+
+class HeldColumn(NamedTuple):
+    """A column: its name as the reader finds it, that within its table, its unit, its numbers.
+
+    `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
+    looks for its meaning, where that is not its name.
+    """
+
+    name: str
+    label: str
+    unit: str | None
+    values: np.ndarray
+    table: str = ""
+    said: bool = True
+    shown: str = ""
+
+
+def better_name(name: str, meaning: str) -> str:
+    """Return the description of a column if its name alone has no meaning; else "".
+
+    >>> better_name("F_nrm", "normal force, by the leaf spring"), better_name("Fx", "lateral force")
+    ('normal force', '')
+    """
+    words = re.split(r"[,;:(\[]|\s[-–—]\s", meaning)[0].strip()
+    quantities = [word.quantity for word in known_words("run")]
+    if not words or names_any(name, *quantities) or not names_any(words, *quantities):
+        return ""
+    return words
+
+
+def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
+    """Omit tables in groups next to another one with columns of the same names."""
+    kept: dict[str, set[str]] = {}
+    left: set[str] = set()
+    tables: dict[str, list[str]] = {}
+    for column in columns:
+        tables.setdefault(column.table, []).append(column.label)
+    for table, names in tables.items():
+        if len(names) > 1 and any(len(set(names) & known) > 1 for known in kept.values()):
+            left.add(table)
+        else:
+            kept[table] = set(names)
+    return [column for column in columns if column.table not in left]
+
+
+def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:
+    """Name other tables that have columns of the same names as the chosen; "" if none."""
+    names = {column.label for column in chosen}
+    meant = set(map(id, chosen))
+    alike: dict[str, int] = {}
+    for column in every:
+        if id(column) not in meant and column.label in names:
+            alike[column.table] = alike.get(column.table, 0) + 1
+    tables = [f"'{shown(table, 30)}'" for table, count in alike.items() if table and count > 1]
+    return ", ".join(tables[:_TOLD])
+
+
+_ABOVE = 40  # rows of a sheet above its names
+_MOMENTS = (dt.datetime, dt.time, dt.timedelta)
+
+
+def main_sheet(path: Path) -> Held:
+    """Return the position of the sheet with the most rows of numbers below names.
+
+    Raises
+    ------
+    ReadError
+        If no sheet has such rows.
+    """
+    tables: list[tuple[int, Held, set[str]]] = []
+    for sheet, rows in sheets_of(path, ROWS).items():
+        place = _names_row(rows)
+        if place is not None:
+            held = Held("excel", sheet, place + 1, not _is_numeric(rows[place + 1]))
+            tables.append((len(rows) - place, held, {str(c) for c in rows[place] if c != ""}))
+    if not tables:
+        raise ReadError("no sheet holds numbers below names", where=path)
+    _, held, names = max(tables, key=lambda table: table[0])
+    alike = [t[1].sheet for t in tables if t[1] is not held and len(t[2] & names) > 1]
+    return held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4]))
+
+
+def _names_row(rows: Sequence[Sequence[object]]) -> int | None:
+    """Return the first row of words with numbers below it, or below a row of units."""
+    for index in range(min(len(rows) - 2, _ABOVE)):
+        words = [cell for cell in rows[index] if isinstance(cell, str) and cell.strip()]
+        if len(words) < 2 or _is_numeric(rows[index]):
+            continue
+        if _is_numeric(rows[index + 1]):
+            return index
+        units = sum(1 for cell in rows[index + 1] if isinstance(cell, str) and cell.strip())
+        if 2 * units >= len(words) and _is_numeric(rows[index + 2]):
+            return index
+    return None
+
+
+def _is_numeric(row: Sequence[object]) -> bool:
+    filled = [cell for cell in row if cell not in ("", None)]
+    numbers = sum(map(_is_number, filled))
+    return numbers >= 2 and 2 * numbers >= len(filled)
+
+
+def _is_number(cell: object) -> bool:
+    """Whether a cell is a number, a moment, or a number that was typed as text."""
+    if isinstance(cell, str):
+        try:
+            float(cell.strip().replace(",", "."))
+        except ValueError:
+            return False
+        return True
+    return isinstance(cell, (int, float, *_MOMENTS)) and not isinstance(cell, bool)

@@ -15,10 +15,10 @@ from tribolab.reading.raw.source import check_regular
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.rotating_parts import torque_of
 from tribolab.reading.unknown.columns.text_evidence import unused_force_columns
-from tribolab.reading.unknown.derivations.candidate_lines import candidate_lines
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.missing_inputs import Uncalibrated, lacking, unknown_of
 from tribolab.reading.unknown.derivations.model import Follows
+from tribolab.reading.unknown.derivations.stated_lines import candidate_lines
 from tribolab.reading.unknown.header.factors import calibration_lines
 from tribolab.reading.unknown.header.settings import lines_without_unit
 from tribolab.reading.unknown.header.zero import STILL

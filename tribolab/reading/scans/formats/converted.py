@@ -1,6 +1,7 @@
-"""Digital Surf files converted for SurfaceTopography (1.27): uncompressed, units in Latin-1.
+"""Files converted for SurfaceTopography (1.27): Digital Surf, and SDF of the draft standard.
 
-Since 2010 the makers' software compresses the heights (``DSCOMPRESSED``) by default.
+Since 2010 the makers of Surf software compress the heights (``DSCOMPRESSED``) by default; units are
+in Latin-1. SDF with ``aBCR-1.0`` or ``bBCR-1.0`` has the layout of ``aISO-1.0`` or ``bISO-1.0``.
 """
 
 from __future__ import annotations
@@ -37,11 +38,11 @@ def plain_sur(path: Path) -> Path:
     if header.startswith(_PLAIN) and _UTF8_MICRO not in header[_UNITS]:
         return path
     state = path.stat()
-    return _copied(path.resolve(), state.st_size, state.st_mtime_ns)
+    return _uncompressed(path.resolve(), state.st_size, state.st_mtime_ns)
 
 
 @functools.lru_cache(maxsize=8)
-def _copied(path: Path, size: int, modified: int) -> Path:
+def _uncompressed(path: Path, size: int, modified: int) -> Path:
     content = path.read_bytes()
     try:
         bits, (nx, ny) = (
@@ -80,3 +81,28 @@ def _unpacked(body: bytes, size: int) -> bytes:
     if len(whole) < size:
         raise ValueError(f"{len(whole)} bytes of heights, but {size} are wanted")
     return whole
+
+
+_DRAFTS = {b"aBCR-1.0": b"aISO-1.0", b"bBCR-1.0": b"bISO-1.0"}
+_DRAFT_MARK = 8  # bytes
+
+
+def is_sdf_draft(head: bytes) -> bool:
+    """Whether a file begins like the draft format.
+
+    >>> is_sdf_draft(b"aBCR-1.0"), is_sdf_draft(b"aISO-1.0")
+    (True, False)
+    """
+    return head[:_DRAFT_MARK] in _DRAFTS
+
+
+def as_standard(path: Path) -> Path:
+    """Return a copy of such a file with the signature of the standard."""
+    state = path.stat()
+    return _restamped(path.resolve(), state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=8)
+def _restamped(path: Path, size: int, modified: int) -> Path:
+    content = path.read_bytes()
+    return scratch_copy(path, _DRAFTS[content[:_DRAFT_MARK]] + content[_DRAFT_MARK:])
