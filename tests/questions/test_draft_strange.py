@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.reading.text.thousands import find_thousands
+from tribolab.reading.text.number_spelling import find_thousands
 
 N = 600
 T = np.arange(N) / 20

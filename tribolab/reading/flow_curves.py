@@ -7,11 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.core.errors import ReadError, UnitError, shown
+from tribolab.core.errors import ReadError
 from tribolab.reading.lexicon.lexicon import known_words, normalise_label
-from tribolab.reading.modulus_tables import Column, TableKind, find_table, numbers_of
+from tribolab.reading.modulus_tables import Column, TableKind, find_table, numbers_of, scale_of
 from tribolab.reading.raw.source import read_unchanged
-from tribolab.units.conversion import conversion
 
 _UNITS = {"shear_rate": "1/s", "viscosity": "Pa s"}
 _SAME_RATE = 0.02  # of it: what a rheometer leaves of one set-point
@@ -58,7 +57,7 @@ def read_flow_curve(path: str | Path) -> FlowCurve:
     values = np.array([row for row in rows if row is not None], dtype=float)
     data = dict(zip(table.columns, values.reshape(-1, len(table.columns)).T, strict=True))
     rate, viscosity = (
-        data[name] * _factor(table.columns[name], unit, path.name) for name, unit in _UNITS.items()
+        data[name] * scale_of(table.columns[name], unit, path.name) for name, unit in _UNITS.items()
     )
     good = np.isfinite(rate) & np.isfinite(viscosity) & (rate > 0) & (viscosity > 0)
     order = np.argsort(rate[good], kind="stable")
@@ -89,15 +88,3 @@ def _needed(columns: dict[str, Column]) -> dict[str, Column]:
 
 
 _FLOW_CURVE = TableKind(_concept, _needed, "shear rate and viscosity are wanted")
-
-
-def _factor(column: Column, unit: str, name: str) -> float:
-    if not column.unit:
-        raise ReadError(
-            f"{name}: the unit of column '{shown(column.label)}' is not stated; write it behind "
-            f"the name in brackets, e.g. '{shown(column.label)} [{unit}]'"
-        )
-    try:
-        return conversion(column.unit, unit)[0]
-    except UnitError as error:
-        raise ReadError(f"{name}: column '{shown(column.label)}': {error}") from error

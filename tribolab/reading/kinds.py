@@ -11,7 +11,7 @@ from tribolab.reading.dialect.find import is_scan, load_dialect, recognise
 from tribolab.reading.dialect.python_reader import PythonReader, with_columns
 from tribolab.reading.netcdf.seal import carries_seal
 from tribolab.reading.raw.source import check_regular
-from tribolab.reading.scans.formats.named_arrays import has_arrays
+from tribolab.reading.scans.formats.named_arrays import is_of_arrays
 from tribolab.reading.text.first_bytes import is_results, peek
 
 _LAST_NUMBER = re.compile(r"[ _-]*\d+$")
@@ -66,7 +66,7 @@ def _is_map(path: Path) -> bool:
         check_regular(path)
         with path.open("rb") as file:
             head = file.read(16)
-        if not has_arrays(path, head) or carries_seal(path):
+        if not is_of_arrays(path, head) or carries_seal(path):
             return False
         # late: starting stays quick
         from tribolab.reading.scans.formats.arrays import is_map_file

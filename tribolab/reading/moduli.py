@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -10,17 +9,23 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.core.errors import Cure, ReadError, UnitError, shown
-from tribolab.reading.modulus_tables import HEAD, Column, Table, find_table, numbers_of
+from tribolab.reading.modulus_tables import (
+    HEAD,
+    NO_UNIT,
+    Column,
+    Table,
+    find_table,
+    numbers_of,
+    scale_of,
+)
 from tribolab.reading.raw.source import read_unchanged
-from tribolab.units.conversion import conversion
+from tribolab.units.conversion import to_si
 from tribolab.units.quantities import unit_conversion
 from tribolab.units.reciprocals import reciprocal
 
 SHEAR_TO_TENSILE = 3.0  # E = 2 (1 + nu) G of an incompressible solid
-_NO_UNIT = ("", "-", "1", "[]", "[-]", "[1]")
 _SAME_FREQUENCY = 1e-3  # of it: what rounding leaves of one set-point
 _SAME_TEMPERATURE = 3.0  # K: what an oven leaves within one sweep
-_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
 
 
 class ModulusTable(NamedTuple):
@@ -102,8 +107,14 @@ def _in_si(table: Table, unit: str | None, name: str, remarks: list[str]) -> np.
     data = dict(zip(table.columns, values.T, strict=True))
     found = table.columns.get("angular_frequency") or table.columns["modulus_frequency"]
     omega = data[found.concept] * _to_angular(found, name, remarks)
+    cure = Cure(
+        notebook="say it with unit='MPa'",
+        terminal=f'state it in a campaign file: modulus_file = "{name}", modulus_unit = "MPa" in '
+        "[contact]",
+        campaign='state it: modulus_unit = "MPa" in [contact]',
+    )
     moduli = {
-        concept: data[concept] * _scale(table.columns[concept], "Pa", unit, name)
+        concept: data[concept] * scale_of(table.columns[concept], "Pa", name, unit or "", cure)
         for concept in ("storage_modulus", "loss_modulus", "complex_modulus")
         if concept in data
     }
@@ -116,7 +127,7 @@ def _in_si(table: Table, unit: str | None, name: str, remarks: list[str]) -> np.
         phase = (
             np.arctan(data["loss_factor"])
             if "loss_factor" in data
-            else data["phase_angle"] * _phase_scale(table.columns["phase_angle"], name)
+            else data["phase_angle"] * scale_of(table.columns["phase_angle"], "rad", name, "deg")
         )
         storage, loss = (moduli["complex_modulus"] * f(phase) for f in (np.cos, np.sin))
     temperature = data.get("temperature", np.full(len(omega), np.nan))
@@ -124,33 +135,10 @@ def _in_si(table: Table, unit: str | None, name: str, remarks: list[str]) -> np.
     return result[:, np.isfinite(result[:3]).all(axis=0)]
 
 
-def _scale(column: Column, si_unit: str, stated: str | None, name: str) -> float:
-    unit = column.unit if column.unit not in _NO_UNIT else (stated or "")
-    if not unit:
-        raise ReadError(
-            f"{name}: the unit of column '{shown(column.label)}' is not stated; units are read "
-            "from brackets, or from the row below the names",
-            cure=Cure(
-                notebook="say it with unit='MPa'",
-                terminal=f'state it in a campaign file: modulus_file = "{name}", '
-                'modulus_unit = "MPa" in [contact]',
-                campaign='state it: modulus_unit = "MPa" in [contact]',
-            ),
-        )
-    try:
-        return conversion(unit, si_unit)[0]
-    except UnitError as error:
-        raise ReadError(f"{name}: column '{shown(column.label)}': {error}") from error
-
-
-def _phase_scale(column: Column, name: str) -> float:
-    return _scale(column, "rad", "deg", name)
-
-
 def _to_angular(column: Column, name: str, remarks: list[str]) -> float:
     """Scale to rad/s; a name that says omega and a unit that does not say radians contradict."""
     angular, unit = column.concept == "angular_frequency", column.unit
-    if unit in _NO_UNIT:
+    if unit in NO_UNIT:
         unit = "rad/s" if angular else "Hz"
         remarks.append(f"'{shown(column.label)}' has no unit and is taken for {unit}")
     known = reciprocal(unit)
@@ -206,11 +194,12 @@ def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarr
 
 
 def _at_temperature(sweeps: Sequence[np.ndarray], wanted: str, name: str) -> np.ndarray:
-    kelvin = conversion(re.sub(r"[-+\d.\s]+", "", wanted) or "degC", "K")
-    number = _NUMBER.match(wanted.strip())
-    if number is None:
-        raise ReadError(f"{name}: sweep '{shown(wanted)}': a temperature is wanted, e.g. \"25 C\"")
-    celsius = float(number[0]) * kelvin[0] + kelvin[1] - 273.15
+    text = wanted if any(map(str.isalpha, wanted)) else f"{wanted} degC"
+    try:
+        celsius = to_si(text, "K", "sweep") - 273.15
+    except UnitError as error:
+        what = f"{name}: sweep '{shown(wanted)}': a temperature is wanted, e.g. \"25 C\""
+        raise ReadError(what) from error
     apart = [abs(float(np.median(sweep[3])) - celsius) for sweep in sweeps]
     best = int(np.argmin(apart)) if np.isfinite(apart).any() else 0
     if not apart[best] <= _SAME_TEMPERATURE:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import csv
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -11,12 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.core.errors import ReadError, shown
+from tribolab.core.errors import Cure, ReadError, UnitError, shown
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
-from tribolab.reading.raw.opening import isolated, report_damage
+from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.source import check_regular
-from tribolab.reading.text.first_bytes import peek
+from tribolab.reading.text.first_bytes import peek, text_of
+from tribolab.units.conversion import conversion
 
 HEAD = 200  # rows among which the names stand
 _LARGEST = 32 << 20  # bytes of a table in text
@@ -38,6 +38,7 @@ _TURNED = re.compile(
     re.IGNORECASE,
 )
 _PRESSED = re.compile(r"compress|tension|tensile|cantilever|bend|druck|zug", re.IGNORECASE)
+NO_UNIT = ("", "-", "1", "[]", "[-]", "[1]")
 Row = list[str]
 
 
@@ -252,7 +253,7 @@ def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     if len(raw) > _LARGEST:
         raise ReadError(f"{path.name}: {path.stat().st_size >> 20} MB are no table of a modulus")
-    lines = [_COMMENT.sub("", line) for line in _decoded(raw).splitlines()[:longest]]
+    lines = [_COMMENT.sub("", line) for line in text_of(raw).splitlines()[:longest]]
     lines = _with_names(lines, path.suffix.lower())
     for delimiter in ("\t", ";", ",", "  ", " "):
         if delimiter.isspace() and delimiter != "\t":  # columns are aligned
@@ -296,34 +297,46 @@ def _apart(row: Row) -> Row:
     return cells if all(map(_NUMBER.fullmatch, cells)) else row
 
 
-def _decoded(raw: bytes) -> str:
-    for mark, encoding in (
-        (codecs.BOM_UTF8, "utf-8-sig"),
-        (codecs.BOM_UTF16_LE, "utf-16"),
-        (codecs.BOM_UTF16_BE, "utf-16"),
-    ):
-        if raw.startswith(mark):
-            return raw.decode(encoding, errors="replace")
-    try:
-        return raw.decode("utf-8")
-    except UnicodeDecodeError:
-        return raw.decode("cp1252", errors="replace")
-
-
 def _workbook(path: Path, sheet: str | None) -> Iterator[tuple[list[Row], str]]:
-    for cells in _sheets(path, sheet):
-        yield cells, "."
+    cells = sheets_of(path)
+    if sheet is not None and sheet not in cells:
+        raise ReadError(f"there is no sheet '{shown(sheet)}'", where=path)
+    for name, rows in cells.items():
+        if sheet in (None, name):
+            yield [["" if c is None else str(c) for c in row] for row in rows], "."
 
 
-@isolated("pandas", "python_calamine")
-def _sheets(path: Path, sheet: str | None) -> list[list[Row]]:
-    # late: a library that takes long to load, in the child alone
-    import pandas as pd
+def scale_of(
+    column: Column, si_unit: str, name: str, stated: str = "", cure: Cure | str = ""
+) -> float:
+    """Return the factor of a column's numbers to an SI unit.
 
-    wanted = None if sheet is None else [sheet]
-    with report_damage(path, "workbook"):
-        found = pd.read_excel(path, sheet_name=wanted, dtype=object, header=None, engine="calamine")
-    return [
-        [["" if c is None or c != c else str(c) for c in row] for row in one.to_numpy(dtype=object)]
-        for one in found.values()
-    ]
+    Parameters
+    ----------
+    column
+        The column.
+    si_unit
+        The SI unit.
+    name
+        Name of the file, for messages.
+    stated
+        Its unit, if the file states none.
+    cure
+        What to do if no unit is known.
+
+    Raises
+    ------
+    ReadError
+        If its unit is not known, or has another dimension.
+    """
+    unit = column.unit if column.unit not in NO_UNIT else stated
+    if not unit:
+        raise ReadError(
+            f"{name}: the unit of column '{shown(column.label)}' is not stated; units are read "
+            "from brackets, or from the row below the names",
+            cure=cure,
+        )
+    try:
+        return conversion(unit, si_unit)[0]
+    except UnitError as error:
+        raise ReadError(f"{name}: column '{shown(column.label)}': {error}") from error

@@ -32,7 +32,6 @@ from tribolab.reading.unknown.proposal.questions import (
 from tribolab.reading.unknown_run import (
     DRAFTED,
     draft_of,
-    lacks_distance,
     left_open,
     measures_other_things,
 )
@@ -209,10 +208,10 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     if draft.kind != "scan":
         return None
     understood = draft.understood
-    asked, lacks = questions(draft), lacks_distance(draft)
+    asked = questions(draft)
     if asked and not draft.named and not (understood is not None and understood.pitched):
         return None
-    if asked or lacks:
+    if asked:
         known = understood_columns(draft)
-        raise GuessedError(file, asked, cures.SURFACE, lacks, known) from error
+        raise GuessedError(file, asked, cures.SURFACE, (), known) from error
     return draft.dialect

@@ -188,8 +188,6 @@ def left_open(draft: Draft) -> ReadError | None:
         return None
     draft, _ = leave_out_doubtful(draft)
     asked, known = questions(draft), understood_columns(draft)
-    if missing := lacks_distance(draft):
-        return GuessedError(draft.path, asked, cures.SURFACE, missing, known)
     if asked or lacks_friction(draft):
         lacks, options = missing_words(draft), missing_options(draft, asked)
         by_option = missing_words(draft, by_option=True)
@@ -203,12 +201,6 @@ def measures_other_things(draft: Draft) -> bool:
     units = [column.file_unit or split_name(column.label)[1] or "" for column in columns]
     stated = [unit for unit in units if measures_something(unit)]
     return len(stated) > len(units) / 2 and not any(converts(unit, "m") for unit in stated)
-
-
-def lacks_distance(draft: Draft) -> list[str]:
-    """Return what is missing of the distance of a profile's points; empty if nothing is."""
-    understood = draft.understood
-    return [understood.lacks] if understood is not None and understood.lacks else []
 
 
 def _complete_dialect(path: Path) -> Dialect | None:

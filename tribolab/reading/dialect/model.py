@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 from tribolab.core.errors import nearest, shown
 from tribolab.reading.dialect.checked_text import Formula, QuantityName, Strict, ZeroText
-from tribolab.reading.dialect.column_rule import Column
+from tribolab.reading.dialect.column_rule import Column, Value
 from tribolab.reading.dialect.file_layout import (
     Binary,
     Header,
@@ -26,7 +26,6 @@ from tribolab.reading.dialect.file_layout import (
 from tribolab.reading.dialect.formula import names_in, parse_formula
 from tribolab.reading.dialect.time_rule import Speed, Time
 from tribolab.reading.dialect.uncertainty import Uncertainty
-from tribolab.reading.dialect.value_rule import Value
 from tribolab.units.conversion import positive
 
 

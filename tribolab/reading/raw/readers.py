@@ -17,7 +17,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from tribolab.core.errors import ConfigError, ReadError, TribolabError, shown
-from tribolab.reading.raw.containers.settings import settings_of
+from tribolab.reading.raw.containers.groups import settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
 from tribolab.reading.raw.source import check_regular
 from tribolab.units.quantities import QUANTITIES

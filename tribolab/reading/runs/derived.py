@@ -10,6 +10,7 @@ from tribolab.arrays.chunks import lowered
 from tribolab.arrays.medians import median
 from tribolab.core.errors import Cure, ReadError, UnitError
 from tribolab.core.untyped import Json
+from tribolab.reading.dialect.column_rule import Value
 from tribolab.reading.dialect.formula import (
     Operand,
     evaluate,
@@ -18,7 +19,6 @@ from tribolab.reading.dialect.formula import (
     parse_formula,
 )
 from tribolab.reading.dialect.model import Derived, Dialect
-from tribolab.reading.dialect.value_rule import Value
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.units.quantities import QUANTITIES, quantity
 

@@ -95,6 +95,16 @@ def _last_digit(x: np.ndarray) -> float:
     return 0.0
 
 
+def rounder_pitch(length: float, points: int) -> float:
+    """Return the pitch for a length to the last point or one step beyond it; the rounder one.
+
+    >>> rounder_pitch(2e-4, 400), rounder_pitch(1.995e-4, 400)
+    (5e-07, 5e-07)
+    """
+    pitches = [length / parts for parts in (points, max(points - 1, 1))]
+    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
+
+
 def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.Dataset:
     """Return a map (y, x) from rows of x, y and height [m] in any order.
 

@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern, words_of
+from tribolab.reading.numbers import decimal, numbers_in
+from tribolab.reading.scans.grid import rounder_pitch
 from tribolab.reading.scans.limits import SAME_RANGE
 from tribolab.reading.scans.unit_words import (
     AXES,
@@ -26,10 +28,9 @@ from tribolab.units.spellings import unit_of_length
 _MAX_COUNT = 1e9  # of steps of a resolution
 _MAX_LINE = 300  # most characters of a line
 _MAX_NUMBERS = 2  # in an entry; more are a date, a time, or a row of results
-_NUMBER = r"(?<![\w.])[-+]?\d+(?:[{marks}]\d+)?(?:[eE][-+]?\d+)?"
+_BLANKED = str.maketrans(";[](){}", "       ")  # between a number and its unit
+_COMMA = re.compile(r"(?<!\d),|,(?!\d)")
 _CELL_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
-_BEHIND = re.compile(r"[\s,;]*[(\[]?(?P<unit>[^\W\d_]+)?(?P<per>\s*(?:/|per)\s*[^\W\d_]+)?")
-_WORD = re.compile(r"[^\W\d_]+")
 
 
 class MapHeader(NamedTuple):
@@ -116,7 +117,7 @@ def map_header(
             e._replace(units=(x_unit,) * len(e.numbers)) if e in bare else e for e in entries
         ]
     pitch = _alongaxes_of([e for e in entries if _is_pitch(e)], (1, 1))
-    extent = _alongaxes_of([e for e in entries if _is_extent(e)], shape, parted=True)
+    extent = _alongaxes_of([e for e in entries if _is_extent(e)], shape)
     dx, dy = (first or second for first, second in zip(pitch, extent, strict=True))
     doubt = ""
     if dx and dy is None and not any(_names_axis(e, "y") for e in entries if any(e.units)):
@@ -191,24 +192,21 @@ def _split_entries(text: str, *, commas_part: bool) -> list[str]:
 
 def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:
     """Return name and numbers of a line; None without a number or with many."""
-    number = _NUMBER.format(marks="." if commas_part else ".,")
-    found = list(re.finditer(number, text))
+    apart = _COMMA.sub(" ", text.translate(_BLANKED))
+    found = numbers_in(apart.replace(",", " ") if commas_part else apart)
     if not found or len(found) > _MAX_NUMBERS:
         return None
-    key = text[: found[0].start()]
-    behind = [_BEHIND.match(text, match.end()) for match in found]
-    units = [unit_of_length(match["unit"] or "") if match else "" for match in behind]
+    key = text[: found[0].start]
+    behind = [number.unit.partition("/") for number in found]
+    units = [unit_of_length(unit) for unit, _, _ in behind]
     in_key = [stated.unit for stated in stated_units(key)]
     usual = units[-1] or (in_key[-1] if in_key else "")
     per = part_pattern("pixel"), part_pattern("points_at_end")
     per_point = any(
-        match
-        and unit
-        and match["per"]
-        and any(p.search(normalise_label(match["per"])) for p in per)
-        for match, unit in zip(behind, units, strict=True)
+        unit and any(p.search(normalise_label(point)) for p in per)
+        for (_, _, point), unit in zip(behind, units, strict=True)
     )
-    numbers = tuple(_number(match[0], mark) for match in found)
+    numbers = tuple(_number(number.text, mark) for number in found)
     return _Entry(key, numbers, tuple(unit or usual for unit in units), per_point)
 
 
@@ -219,7 +217,7 @@ def _number(text: str, mark: str) -> float:
     (2.5, 1.024, nan)
     """
     thousands = re.fullmatch(r"[-+]?[1-9]\d{0,2}[.,]\d{3}", text) and mark not in text
-    return float("nan") if thousands else float(text.replace(",", "."))
+    return float("nan") if thousands else decimal(text)
 
 
 def _names(key: str) -> Iterator[str]:
@@ -289,7 +287,7 @@ def _is_factor(entry: _Entry) -> bool:
 
 
 def _alongaxes_of(
-    entries: Iterable[_Entry], shape: tuple[int, int], *, parted: bool = False
+    entries: Iterable[_Entry], shape: tuple[int, int]
 ) -> tuple[float | None, float | None]:
     """Return the pitch along x and y [m] that entries state; one of both axes counts last."""
     rows, columns = (max(number, 1) for number in shape)
@@ -303,22 +301,14 @@ def _alongaxes_of(
             continue
         x, y = (_names_axis(entry, axis) for axis in "xy")
         if len(lengths) == 2:
-            own["x"].add(_pitch_from_length(lengths[0], columns, parted))
-            own["y"].add(_pitch_from_length(lengths[1], rows, parted))
+            own["x"].add(rounder_pitch(lengths[0], columns))
+            own["y"].add(rounder_pitch(lengths[1], rows))
         elif x != y:
-            own["x" if x else "y"].add(
-                _pitch_from_length(lengths[0], columns if x else rows, parted)
-            )
+            own["x" if x else "y"].add(rounder_pitch(lengths[0], columns if x else rows))
         elif rows == columns:  # for a rectangular field, a single length is ambiguous
-            both.add(_pitch_from_length(lengths[0], columns, parted))
+            both.add(rounder_pitch(lengths[0], columns))
     dx, dy = (only_one(stated or both) for stated in own.values())
     return dx, dy
-
-
-def _pitch_from_length(length: float, points: int, parted: bool) -> float:
-    """Return the pitch for a length to the last point or one step beyond it; the rounder one."""
-    pitches = [length / points, length / max(points - 1, 1)] if parted else [length]
-    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
 
 
 def _counts(entries: Iterable[_Entry]) -> tuple[int | None, int | None]:

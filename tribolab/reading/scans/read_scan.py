@@ -30,7 +30,7 @@ from tribolab.reading.raw.opening import RefusedError
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.scans.extent import measured_part, refuse_impossible
 from tribolab.reading.scans.formats.undescribed import read_undescribed
-from tribolab.reading.scans.grid import even, gridded
+from tribolab.reading.scans.grid import even, gridded, rounder_pitch
 from tribolab.reading.scans.sentinels import take_isolated
 from tribolab.reading.text.first_bytes import File, peek, results_error
 from tribolab.units.conversion import positive
@@ -289,17 +289,7 @@ def _stated_pitch(
             f"{path}: the {what} is not in the file as the dialect "
             f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
         )
-    return float(stated) if dialect.pitch_value else _rounder_pitch(float(stated), points)
-
-
-def _rounder_pitch(length: float, points: int) -> float:
-    """Return the pitch for a length to the last point or one step beyond it; the rounder one.
-
-    >>> _rounder_pitch(2e-4, 400), _rounder_pitch(1.995e-4, 400)
-    (5e-07, 5e-07)
-    """
-    pitches = [length / parts for parts in (points, max(points - 1, 1))]
-    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
+    return float(stated) if dialect.pitch_value else rounder_pitch(float(stated), points)
 
 
 def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:

@@ -248,7 +248,7 @@ def results_error(head: bytes, where: Path) -> ReadError | None:
     if is_surftest_results(head) or len(named_values(head)) >= _MIN_LINES:
         what = "the file holds the results of a roughness tester, but no profile"
         return ReadError(what, where=where, cure=cures.TESTER_RESULTS)
-    text = _text_of(head) if b"\0" not in head[:4096] else ""
+    text = text_of(head) if b"\0" not in head[:4096] else ""
     if test := find_other_test(text):
         cure = "a run needs a friction force and a load, a scan heights"
         return ReadError(f"the file holds {test}: no friction is in it", where=where, cure=cure)
@@ -259,11 +259,14 @@ def results_error(head: bytes, where: Path) -> ReadError | None:
     return ReadError(f"the file holds {table.words}", where=where, cure=cure)
 
 
-def _text_of(head: bytes) -> str:
+def text_of(raw: bytes) -> str:
+    """Return text of two-byte characters, of UTF-8, or else of Western Europe."""
+    if wide := wide_encoding(raw):
+        return raw.decode(wide, errors="replace").removeprefix("\ufeff")
     try:
-        return head.decode("utf-8-sig")
+        return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return head.decode("latin-1")
+        return raw.decode("cp1252", errors="replace")
 
 
 def is_surftest_results(head: bytes) -> bool:
@@ -284,7 +287,7 @@ def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
     """
     if head.count(b"\n") > _MAX_LINES or b"\0" in head[:4096]:
         return []
-    lines = _text_of(head).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = text_of(head).replace("\r\n", "\n").replace("\r", "\n").split("\n")
     entries = [(n, match) for n, line in enumerate(lines, 1) if (match := _NAMED.match(line))]
     if 2 * len(entries) < sum(bool(line.strip()) for line in lines):
         return []

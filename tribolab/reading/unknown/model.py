@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -58,6 +58,11 @@ class DraftColumn(NamedTuple):
     zero: str = ""
     said: Literal["", "torque", "angle"] = ""
 
+    def unused(self, note: str, **more: Any) -> DraftColumn:
+        """Return the column as one that is not read, without open questions, and why."""
+        nothing: dict[str, Any] = {"used": False, "guessed": (), "options": (), "fill_in": ""}
+        return self._replace(**(nothing | {"note": note} | more))
+
     @property
     def read_unit(self) -> str | None:
         """The unit the numbers are read in."""
@@ -77,8 +82,8 @@ class Understood(NamedTuple):
     that a person took for the radius, the load or the speed, by what they are.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
     where no column is a position, `pitch_pattern` the distance of a profile's points,
-    `length_pattern` its length, or `pitch` is what is known of the distance; `lacks` says what
-    would tell it. With `points` each row is a result at one speed.
+    `length_pattern` its length, or `pitch` is what is known of the distance.
+    With `points` each row is a result at one speed.
     """
 
     kind: Kind
@@ -102,7 +107,6 @@ class Understood(NamedTuple):
     pitch_pattern: str = ""
     length_pattern: str = ""
     pitch: str = ""
-    lacks: str = ""
     points: bool = False
 
     @property

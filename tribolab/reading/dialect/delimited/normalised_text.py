@@ -17,8 +17,12 @@ from tribolab.reading.dialect.delimited.headers import (
 )
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.first_bytes import File
-from tribolab.reading.text.number_spelling import is_unusual, usual, without_commas_in_quotes
-from tribolab.reading.text.thousands import without_thousands
+from tribolab.reading.text.number_spelling import (
+    is_unusual,
+    usual,
+    without_commas_in_quotes,
+    without_thousands,
+)
 
 _ODD_ENDS = 3  # a line end converted twice is CR CR LF; longer ones are unknown
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tribolab.reading.lexicon.lexicon import keys_of
-from tribolab.reading.raw.containers.settings import plain, settings_of
+from tribolab.reading.raw.containers.groups import plain, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
 from tribolab.reading.raw.opening import isolated, report_damage
 

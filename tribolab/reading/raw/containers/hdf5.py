@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from tribolab.reading.lexicon.lexicon import keys_of
-from tribolab.reading.raw.containers.groups import Groups
-from tribolab.reading.raw.containers.settings import plain, settings_of
+from tribolab.reading.raw.containers.groups import Groups, plain, settings_of
 from tribolab.reading.raw.hdf5_safety import foreign_storage, refused
 from tribolab.reading.raw.model import RawColumn, RawFile
 from tribolab.reading.raw.opening import isolated, report_damage

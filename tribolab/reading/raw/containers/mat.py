@@ -12,8 +12,7 @@ import numpy as np
 
 from tribolab.core.errors import ReadError
 from tribolab.reading.lexicon.lexicon import keys_of
-from tribolab.reading.raw.containers.groups import Groups
-from tribolab.reading.raw.containers.settings import settings_of
+from tribolab.reading.raw.containers.groups import Groups, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile
 from tribolab.reading.raw.opening import isolated, largest_unpacked, report_damage
 

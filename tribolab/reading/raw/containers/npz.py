@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tribolab.core.errors import ReadError, shown
-from tribolab.reading.raw.containers.settings import plain, settings_of
+from tribolab.reading.raw.containers.groups import plain, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.raw.zip_safety import ZIP_DAMAGE

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribolab.reading.lexicon.lexicon import keys_of
-from tribolab.reading.raw.containers.groups import Groups
-from tribolab.reading.raw.containers.settings import settings_of
+from tribolab.reading.raw.containers.groups import Groups, settings_of
 from tribolab.reading.raw.model import Clock, RawColumn, RawFile
 from tribolab.reading.raw.opening import isolated, report_damage
 

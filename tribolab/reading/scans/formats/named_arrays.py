@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,9 +9,10 @@ import numpy as np
 
 from tribolab.core.errors import ReadError, brief
 from tribolab.core.untyped import Json
+from tribolab.reading.raw.containers.groups import plain
 from tribolab.reading.raw.containers.mat import read_variables
-from tribolab.reading.raw.containers.settings import plain
 from tribolab.reading.raw.opening import isolated
+from tribolab.reading.raw.unpacked import ZIP, has_arrays
 from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 
 NPY = b"\x93NUMPY"
@@ -30,20 +30,10 @@ class NamedArray(NamedTuple):
     attrs: Json
 
 
-def is_npz(path: Path) -> bool:
-    """Whether a zip archive is a NumPy archive."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            names = archive.namelist()
-    except ZIP_DAMAGE:
-        return False
-    return bool(names) and all(name.endswith(".npy") for name in names)
-
-
-def has_arrays(path: Path, head: bytes) -> bool:
+def is_of_arrays(path: Path, head: bytes) -> bool:
     """Whether a file has a format with named arrays."""
     marks = (NPY, _HDF5, *_NETCDF, *_MATLAB)
-    return head.startswith(marks) or (head.startswith(b"PK\x03\x04") and is_npz(path))
+    return head.startswith(marks) or (head.startswith(ZIP) and has_arrays(path))
 
 
 def read_arrays(path: Path) -> list[NamedArray]:

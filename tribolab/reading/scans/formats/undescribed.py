@@ -9,12 +9,12 @@ import xarray as xr
 from tribolab.core.errors import ReadError
 from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook, refuse_cut_short
-from tribolab.reading.raw.unpacked import ZIP, is_workbook, of_the_file, unpacked
+from tribolab.reading.raw.unpacked import ZIP, has_arrays, is_workbook, of_the_file, unpacked
 from tribolab.reading.scans.formats.arrays import read_scan_arrays
 from tribolab.reading.scans.formats.converted import as_standard, is_sdf_draft, is_sur, plain_sur
 from tribolab.reading.scans.formats.gauges import is_gauge, read_gauge
 from tribolab.reading.scans.formats.matrix import read_matrix
-from tribolab.reading.scans.formats.named_arrays import has_arrays, is_npz
+from tribolab.reading.scans.formats.named_arrays import is_of_arrays
 from tribolab.reading.scans.formats.named_units import units_in_name
 from tribolab.reading.scans.formats.nanoscope import is_nanoscope, read_nanoscope
 from tribolab.reading.scans.formats.profilometers import MissingUnitError, read_foreign
@@ -74,7 +74,7 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
 def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    if has_arrays(path, head):
+    if is_of_arrays(path, head):
         return _read_arrays(path, x_unit, height_unit)
     inside = as_standard(path) if is_sdf_draft(head) else unpacked(path, head)
     if inside != path:
@@ -107,7 +107,7 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
 def _read_arrays(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
     """Read named arrays, else use SurfaceTopography."""
     scan = read_scan_arrays(path, x_unit, height_unit)
-    if scan is None and is_npz(path):
+    if scan is None and has_arrays(path):
         raise ReadError(
             "no array of this archive is named as heights are, such as 'z_um' next to 'x_mm'",
             where=path,

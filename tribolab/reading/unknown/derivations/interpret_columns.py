@@ -14,8 +14,12 @@ from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.unknown.columns.cells import Cells, read_cells
 from tribolab.reading.unknown.columns.clock import are_points, find_clock, in_seconds, summed
-from tribolab.reading.unknown.columns.coefficient import disagreement, force_or_ratio
 from tribolab.reading.unknown.columns.dates import take_dates
+from tribolab.reading.unknown.columns.friction_signal import (
+    against_motion,
+    disagreement,
+    force_or_ratio,
+)
 from tribolab.reading.unknown.columns.heights import (
     as_heights,
     in_stated_unit,
@@ -30,7 +34,6 @@ from tribolab.reading.unknown.columns.proven import (
     proven,
 )
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
-from tribolab.reading.unknown.columns.sign_against_motion import against_motion
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES
 from tribolab.reading.unknown.derivations.inclined_contact import guesses_of_inclined
 from tribolab.reading.unknown.derivations.known_amounts import loads_that_add
@@ -175,14 +178,8 @@ def _combined_forces(
 def _without_words(columns: list[DraftColumn], cells: Cells) -> list[DraftColumn]:
     """Leave out columns of words."""
     return [
-        column._replace(
-            used=False,
-            guessed=(),
-            fill_in="",
-            note=Reason.TEXT.value.format(shown(cells.text[column.place - 1])),
-            reason=Reason.TEXT,
-        )
-        if cells.text[column.place - 1] and not column.form
+        column.unused(Reason.TEXT.value.format(shown(text)), reason=Reason.TEXT)
+        if (text := cells.text[column.place - 1]) and not column.form
         else column
         for column in columns
     ]
@@ -299,7 +296,7 @@ def _without_counter(
     if sampling is None or sampling.guess or (np.diff(numbers[:, clock.place - 1]) != 1).any():
         return columns
     note = "it counts the rows, whose rate the text states"
-    other = clock._replace(quantity=None, unit=None, used=False, guessed=(), options=(), note=note)
+    other = clock.unused(note, quantity=None, unit=None)
     return [other if column is clock else column for column in columns]
 
 

@@ -48,11 +48,8 @@ def add_speed(result: Follows, layout: Layout, understood: Understood, known: Kn
         return result.with_values(stated_rotation(known.values))
     if sliding.rule.speed == "position":
         return _by_position(result, sliding, understood, known)
-    by_rule = {
-        "rotation": _by_rotation,
-    }.get(sliding.rule.speed)
-    if by_rule is not None:
-        return by_rule(result, sliding)
+    if sliding.rule.speed == "rotation":
+        return _by_rotation(result, sliding)
     if sliding.rule.speed == "set speed":
         return _by_set_speed(result, sliding, steady=is_steady(understood))
     if sliding.rule.speed == "stroke" and known.strokes is not None:

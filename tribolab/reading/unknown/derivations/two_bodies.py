@@ -81,12 +81,7 @@ def _speed_of(column: DraftColumn) -> str:
 def exclude_surface_speeds(columns: Sequence[DraftColumn], pair: Pair | None) -> list[DraftColumn]:
     """Return columns of surface speeds, which are not the sliding speed."""
     places = {column.place for column in pair.columns} if pair is not None else set()
-    return [
-        c._replace(quantity=None, used=False, guessed=(), options=(), fill_in="", note=_SURFACE)
-        if c.place in places
-        else c
-        for c in columns
-    ]
+    return [c.unused(_SURFACE, quantity=None) if c.place in places else c for c in columns]
 
 
 def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...]:

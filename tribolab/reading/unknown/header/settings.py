@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 
-from tribolab.reading.interpret.amounts import Amount, Amounts
-from tribolab.reading.interpret.file_names import amounts_of_name, speed_of_name
+from tribolab.reading.interpret.amounts import Amount, Amounts, amounts_of_name, speed_of_name
 from tribolab.reading.interpret.settings import add_unique, amounts_of, texts_of
 from tribolab.reading.unknown.layout.text_layout import Layout
 

@@ -19,14 +19,21 @@ from tribolab.reading.raw import limits
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import HEAD, File
 from tribolab.reading.text.number_spelling import (
+    Mark,
+    find_thousands,
     has_commas_in_quotes,
     is_unusual,
     usual,
     without_commas_in_quotes,
+    without_thousands,
 )
-from tribolab.reading.text.thousands import Mark, find_thousands, without_thousands
-from tribolab.reading.unknown.layout.blocks import find_blocks, main_blocks
-from tribolab.reading.unknown.layout.header import STEP_WORD, Block, Heading
+from tribolab.reading.unknown.layout.header import (
+    STEP_WORD,
+    Block,
+    Heading,
+    find_blocks,
+    main_blocks,
+)
 from tribolab.reading.unknown.layout.lines import (
     DELIMITERS,
     Grammar,

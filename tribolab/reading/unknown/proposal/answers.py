@@ -74,17 +74,7 @@ def corrected(
         elif name in (column.quantity, column.said):
             note = "not this quantity, as was said"
             columns.append(
-                column._replace(
-                    quantity=None,
-                    used=False,
-                    guessed=(),
-                    fill_in="",
-                    unit=None,
-                    sign=1,
-                    note=note,
-                    reason=None,
-                    said="",
-                )
+                column.unused(note, quantity=None, unit=None, sign=1, reason=None, said="")
             )
         else:
             columns.append(column)
@@ -107,17 +97,14 @@ def _said(column: DraftColumn, worth: Worth, sign: int, draft: Drafted) -> Draft
         raise ReadError(
             f"column {column.place} needs a unit of {name}, e.g. '{si_unit}'", where=draft.path
         )
-    return column._replace(
+    return column.unused(
+        "",
+        used=measured,
         quantity=name if measured else None,
         unit=unit if unit and (unit != column.file_unit or column.name is None) else None,
         sign=sign,
         scale=scale,
-        used=measured,
-        said=TORQUE if name == TORQUE else ANGLE if name == ANGLE else "",
-        guessed=(),
-        options=(),
-        fill_in="",
-        note="",
+        said=name if name in (TORQUE, ANGLE) else "",
     )
 
 
@@ -138,12 +125,7 @@ def leave_out_doubtful(draft: AnyDraft) -> tuple[AnyDraft, tuple[str, ...]]:
     out = [c for c in understood.columns if _is_doubtful(c) and not _is_needed(c.quantity, certain)]
     if not out:
         return draft, ()
-    columns = [
-        c._replace(used=False, guessed=(), options=(), fill_in="", note=f"left out: {_doubt_of(c)}")
-        if c in out
-        else c
-        for c in understood.columns
-    ]
+    columns = [c.unused(f"left out: {_doubt_of(c)}") if c in out else c for c in understood.columns]
     left = tuple(f"'{shown(c.label, 30)}' ({_doubt_of(c)})" for c in out)
     return draft.with_understood(understood._replace(columns=tuple(columns))), left
 

@@ -9,11 +9,10 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 
 from tribolab.core.errors import ReadError, TribolabError, brief
-from tribolab.reading.dialect.column_rule import Column
+from tribolab.reading.dialect.column_rule import Column, Value
 from tribolab.reading.dialect.file_layout import Header, Text
 from tribolab.reading.dialect.model import Derived, Dialect
 from tribolab.reading.dialect.time_rule import Time
-from tribolab.reading.dialect.value_rule import Value
 from tribolab.reading.dialect.write import plain
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts
