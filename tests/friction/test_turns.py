@@ -6,7 +6,7 @@ from dialects import dialect_of
 
 import tribolab as tl
 from tribolab.core.errors import ConfigError, ReadError, TribolabError, UnitError
-from tribolab.reading.interpret.unit_texts import is_unit
+from tribolab.reading.unit_texts import is_unit
 from tribolab.rubber.modulus import read_modulus
 from tribolab.units.conversion import conversion, to_si
 from tribolab.units.quantities import QUANTITIES, dictionary, quantity, unit_conversion

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.core.errors import Cure, ReadError, UnitError, shown
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
 from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.text.first_bytes import peek, text_of
+from tribolab.reading.unit_texts import converts
 from tribolab.units.conversion import conversion
 
 HEAD = 200  # rows among which the names stand

@@ -15,13 +15,13 @@ from tribolab.core.aliases import PathLike
 from tribolab.core.errors import LacksError, ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError, recognise
-from tribolab.reading.interpret.unit_texts import converts, measures_something
 from tribolab.reading.raw.opening import CrashedError, RefusedError
 from tribolab.reading.raw.source import read_unchanged
 from tribolab.reading.runs import read_run as runs
 from tribolab.reading.signals import Signals
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.text.first_bytes import peek
+from tribolab.reading.unit_texts import converts, measures_something
 
 if TYPE_CHECKING:
     import xarray as xr

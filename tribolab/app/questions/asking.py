@@ -25,8 +25,8 @@ from tribolab.app.questions.typed import (
 )
 from tribolab.core.errors import TribolabError, shown
 from tribolab.reading.dialect.zero_reading import parse_zero
-from tribolab.reading.interpret.unit_texts import converts, is_unit
 from tribolab.reading.scans.extent import likely_height_unit
+from tribolab.reading.unit_texts import converts, is_unit
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.missing_inputs import lacking

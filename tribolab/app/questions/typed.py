@@ -6,7 +6,7 @@ import math
 import re
 
 from tribolab.core.errors import ReadError, TribolabError
-from tribolab.reading.interpret.unit_texts import converts, is_unit
+from tribolab.reading.unit_texts import converts, is_unit
 from tribolab.units.conversion import positive
 from tribolab.units.reciprocals import reciprocal
 from tribolab.units.spellings import WEIGHTS

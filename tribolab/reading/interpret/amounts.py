@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern
 from tribolab.reading.numbers import decimal
+from tribolab.reading.unit_texts import converts
 from tribolab.units.conversion import conversion
 from tribolab.units.spellings import WEIGHTS
 

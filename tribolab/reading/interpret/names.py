@@ -6,7 +6,6 @@ import functools
 import re
 from typing import NamedTuple
 
-from tribolab.reading.interpret.unit_texts import converts, is_turns, is_unit
 from tribolab.reading.lexicon.lexicon import (
     Word,
     alternatives,
@@ -19,6 +18,7 @@ from tribolab.reading.lexicon.lexicon import (
     role_of,
     without_role,
 )
+from tribolab.reading.unit_texts import converts, is_turns, is_unit
 from tribolab.units.quantities import quantity
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 

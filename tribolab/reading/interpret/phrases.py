@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.reading.lexicon.lexicon import (
     CLAUSE_END,
     alternatives,
@@ -16,6 +15,7 @@ from tribolab.reading.lexicon.lexicon import (
     text_pattern,
 )
 from tribolab.reading.numbers import NUMBER, Number, decimal, number_pattern, numbers_in
+from tribolab.reading.unit_texts import is_unit
 
 LONGEST_LINE = 300  # characters of a line that are inspected
 _MAX_OF_LINE = 8  # most numbers of a line

@@ -22,7 +22,7 @@ from tribolab.reading.interpret.rules import (
     to_si,
     units_written,
 )
-from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unit_texts import converts
 from tribolab.units.quantities import QUANTITIES
 from tribolab.units.spellings import WEIGHTS
 

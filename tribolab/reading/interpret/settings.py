@@ -14,13 +14,6 @@ from tribolab.reading.interpret.phrases import (
     label_of,
     phrases,
 )
-from tribolab.reading.interpret.unit_texts import (
-    DIMENSIONS,
-    converts,
-    is_per_minute,
-    is_unit,
-    measures_something,
-)
 from tribolab.reading.lexicon.lexicon import (
     alternatives,
     key_pattern,
@@ -33,6 +26,13 @@ from tribolab.reading.lexicon.lexicon import (
     without_role,
 )
 from tribolab.reading.numbers import NUMBER, escaped
+from tribolab.reading.unit_texts import (
+    DIMENSIONS,
+    converts,
+    is_per_minute,
+    is_unit,
+    measures_something,
+)
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 
 _MAX_ENTRY = 1000  # characters of a line with a key, as searches take quadratic time

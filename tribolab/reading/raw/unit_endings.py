@@ -2,37 +2,9 @@
 
 from __future__ import annotations
 
-import re
+from tribolab.reading.unit_texts import converts, measures_something
 
-from tribolab.core.errors import TribolabError
-from tribolab.units.conversion import conversion
-from tribolab.units.spellings import MICRO
-
-# SI units of recorded quantities
-_MEASURED = (
-    "s",
-    "m",
-    "N",
-    "m/s",
-    "Pa",
-    "K",
-    "V",
-    "1/s",
-    "rad/s",
-    "rad",
-    "N m",
-    "m/s**2",
-    "ohm",
-    "A",
-)
-_WEIGHTS = frozenset(("g", "kg", "gf", "kgf", "kp", "p"))
-_LOWER_CASE_UNITS = {
-    "hz": "Hz",
-    "khz": "kHz",
-    "n": "N",
-    "mn": "mN",
-    "kn": "kN",
-}  # lower-case units in keys
+_LOWER_CASE_UNITS = {"hz": "Hz", "khz": "kHz", "n": "N", "mn": "mN", "kn": "kN"}  # in keys
 _NO_UNIT = frozenset(("percent", "%", "-", "1"))
 
 
@@ -42,17 +14,9 @@ def is_unit(text: str) -> bool:
     >>> is_unit("mm/s"), is_unit("degC"), is_unit("raw"), is_unit("3")
     (True, True, False, False)
     """
-    if text in _WEIGHTS or text.lower() in _NO_UNIT:
+    if text.lower() in _NO_UNIT or text == "A" or converts(text, "rad"):
         return True
-    if not re.fullmatch(rf"[^\W\d_{MICRO}°]*[\w/*^.·°%²³-]*", text) or text.isdigit():
-        return False
-    for unit in _MEASURED:
-        try:
-            conversion(text, unit)
-        except TribolabError:
-            continue
-        return True
-    return False
+    return measures_something(text) and not converts(text, "1")
 
 
 def without_unit(key: str) -> tuple[str, str]:

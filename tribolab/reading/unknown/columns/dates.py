@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.dates import ISO, ISO_ZONE, Epoch, has_day, seconds
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.cells import Cells
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn

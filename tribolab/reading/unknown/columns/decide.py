@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.names import KNOWN_WORD, Match
-from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.evidence import (
     BOTH_FORCES,
     NEAR,

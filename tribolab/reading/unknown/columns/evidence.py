@@ -20,9 +20,9 @@ from tribolab.reading.interpret.names import (
     is_stroke_frequency,
     is_stroke_length,
 )
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import Role, normalise_label, part_pattern, role_of
 from tribolab.reading.runs.force_ratio import LARGEST
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES, Bare
 from tribolab.reading.unknown.model import DraftColumn, Kind

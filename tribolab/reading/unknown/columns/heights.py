@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from tribolab.reading.interpret.names import KNOWN_WORD, matches
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.model import DraftColumn, other_units
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tribolab.reading.interpret.names import COUNTS, is_count, matches, split_unit
-from tribolab.reading.interpret.unit_texts import is_unit, measures_something
 from tribolab.reading.text.cells import split_name
+from tribolab.reading.unit_texts import is_unit, measures_something
 from tribolab.reading.unknown.columns.unit_and_sign import Bare
 from tribolab.reading.unknown.layout.lvm import units_above
 from tribolab.reading.unknown.layout.text_layout import Layout

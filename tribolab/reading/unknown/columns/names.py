@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.reading.interpret.names import Match, is_date, matches
 from tribolab.reading.interpret.physics import Proof
-from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.dates import counted_from
 from tribolab.reading.unknown.columns.decide import SIGNALS, decide
 from tribolab.reading.unknown.columns.evidence import RULES, Facts

@@ -15,8 +15,8 @@ from tribolab.reading.interpret.names import (
     matches,
 )
 from tribolab.reading.interpret.physics import Candidate, Proof, known_quantities, prove
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.evidence import BOTH_FORCES
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.model import DraftColumn

@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tribolab.reading.interpret.names import is_count, is_track_radius, split_unit
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
 from tribolab.reading.text.cells import split_name
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import MICRO
 

@@ -10,13 +10,13 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import (
     UNPARTED,
     normalise_label,
     part_pattern,
     role_of,
 )
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.evidence import (
     BOTH_FORCES,
     FRICTION,
@@ -33,7 +33,6 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason
 from tribolab.units.quantities import unit_conversion
 
-_MAX_LINE = 300  # characters of a line that are looked at
 _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
 _WORDS = rf"(?:[^\W\d][^;|,；，]|[{UNPARTED}])[^;|,；，]{{1,60}}"  # two of such letters make a word
 _KNOWN_SHARE = 0.3  # of an explanation that a known word makes up
@@ -53,7 +52,7 @@ def legend_evidence(layout: Layout) -> Rule:
     def rule(facts: Facts) -> Iterator[Evidence]:
         if facts.kind != "run":
             return
-        lines = [line[:_MAX_LINE] for line in layout.text_above()]
+        lines = layout.sentences()
         for place in range(len(facts.columns)):
             about = _explanation(facts.bare[place][0], lines) if _is_axis(facts, place) else ""
             if not about:
@@ -190,7 +189,7 @@ def unused_force_columns(
 
     One of them may have to be subtracted or added.
     """
-    lines = [line[:_MAX_LINE] for line in layout.text_above()]
+    lines = layout.sentences()
     said = []
     for column in columns:
         name, unit, _ = bare_name(column)
@@ -202,5 +201,5 @@ def unused_force_columns(
         line = next((line for line in lines if short in normalise_label(line)), "")
         if line:
             what = f"column {column.place} '{shown(name, 20)}' is not used, of which the text says "
-            said.append(f"{what}'{shown(line.strip(), 60)}'")
+            said.append(f"{what}'{shown(line, 60)}'")
     return said

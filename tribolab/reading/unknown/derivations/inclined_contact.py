@@ -14,14 +14,13 @@ from typing import NamedTuple
 
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, plain_text
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import torque_of
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_MAX_LINE = 300  # characters of a line that are looked at
 _DIAMETERS = ("d", "dia", "diameter", "durchmesser")
 _OTHER_ANGLE = re.compile(r"(?<![\d.,])(?!45(?!\d))\d{2}(?:[.,]\d+)?\s?(?:°(?!\s?[CFK])|º|deg)")
 # cosine and sine of the angle between contacts and axis: the centres of four equal balls make a
@@ -47,8 +46,7 @@ class Inclined(NamedTuple):
 
 def find_inclined(layout: Layout) -> Inclined | None:
     """Return the inclined contacts that the text above a table, or the file's name, speaks of."""
-    lines = [line.strip()[:_MAX_LINE] for line in layout.text_above()]
-    texts = {text: plain_text(text) for text in (*lines, layout.file.path.stem)}
+    texts = {text: plain_text(text) for text in layout.named_sentences}
     for kind, (cosine, sine) in _ANGLES.items():
         text = next((t for t, words in texts.items() if _pattern(kind).search(words)), "")
         if text and cosine and not (kind == "three_plates" and _OTHER_ANGLE.search(text)):
@@ -99,8 +97,8 @@ def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[
     held = {column.quantity for column in columns if column.used}
     if inclined is None and torque_of(columns) is not None and _has_gap(columns):
         axial = axial_force_of(columns)
-        texts = (*(line[:_MAX_LINE] for line in layout.text_above()), layout.file.path.stem)
-        flat = any(part_pattern("flat_contact").search(plain_text(text)) for text in texts)
+        pattern = part_pattern("flat_contact")
+        flat = any(pattern.search(plain_text(text)) for text in layout.named_sentences)
         name = shown(bare_name(axial)[0], 30) if axial is not None else ""
         said = (
             f"'{name}' is the load on the contact (if it is a ball on three plates, or a ball on "

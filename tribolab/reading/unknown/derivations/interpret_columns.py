@@ -10,8 +10,8 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.text.cells import split_row
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.cells import Cells, read_cells
 from tribolab.reading.unknown.columns.clock import are_points, find_clock, in_seconds, summed
 from tribolab.reading.unknown.columns.dates import take_dates

@@ -10,10 +10,10 @@ import numpy as np
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Given, derive
 from tribolab.reading.interpret.names import is_stroke_frequency
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
 from tribolab.reading.numbers import escaped
 from tribolab.reading.text.cells import split_name
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, radius_of, torque_of, turns_of
 from tribolab.reading.unknown.derivations.inclined_contact import (

@@ -9,9 +9,9 @@ import numpy as np
 from tribolab.arrays.reversals import reversals
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, derive
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
 from tribolab.reading.runs.stroke_speed import DENSEST
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.derivations.known_amounts import KnownRun, is_steady
 from tribolab.reading.unknown.derivations.model import DraftedFormula, Follows, Source, SpeedBy
 from tribolab.reading.unknown.derivations.stated_lines import confirmed_value

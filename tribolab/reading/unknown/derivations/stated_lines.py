@@ -11,10 +11,10 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.numbers import number_pattern, numbers_in
 from tribolab.reading.scans.sentinels import take_stated
 from tribolab.reading.text.cells import split_row
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.derivations.model import Follows
 from tribolab.reading.unknown.header.factors import states_raw_zero
@@ -75,9 +75,6 @@ def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount
     return agreed._replace(name="set_normal_force", unit=unit, to=None, guess="")
 
 
-_MAX_LINE = 200  # characters of a line that are looked at
-
-
 class Gain(NamedTuple):
     """The column of a force in volts, and how much force one of them is."""
 
@@ -92,8 +89,9 @@ def find_gain(layout: Layout, columns: Sequence[DraftColumn], force: str) -> Gai
     """
     column = column_in_volts(columns, force)
     name = re.escape(bare_name(column)[0].strip()) if column is not None else ""
-    lines = [line[:_MAX_LINE].strip() for line in layout.text_above()]
-    mine = [line for line in lines if name and re.search(rf"(?<!\w){name}(?!\w)", line)]
+    mine = [
+        line for line in layout.sentences() if name and re.search(rf"(?<!\w){name}(?!\w)", line)
+    ]
     gains = [(line, n) for line in mine for n in numbers_in(line) if converts(n.unit, "N/V")]
     if column is None or len(gains) != 1 or states_raw_zero(gains[0][0]):
         return None

@@ -10,20 +10,19 @@ import numpy as np
 
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import (
     normalise_label,
     pairs_of_bodies,
     part_pattern,
     role_of,
 )
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.reciprocals import reciprocal
 from tribolab.units.spellings import plain_unit
 
-_MAX_LINE = 200  # characters of a line that are looked at
 _SURFACE = "the speed of one of two surfaces"
 _SPEEDS = {"rotation_speed": "Hz", "sliding_velocity": "m/s"}
 # so little tells bodies apart only where the text speaks of two
@@ -44,11 +43,11 @@ def find_surface_speeds(
 ) -> Pair | None:
     """Return the two columns of how fast two surfaces go, where their names are those of bodies."""
     speeds = [(column, _speed_of(column)) for column in columns]
-    texts = (layout.file.path.stem, *layout.text_above())
+    texts = [normalise_label(text) for text in layout.named_sentences]
     for quantity in _SPEEDS:
         mine = [column for column, held in speeds if held == quantity]
         twin = part_pattern("two_bodies")
-        is_twin = len(mine) == 2 and any(twin.search(normalise_label(t[:_MAX_LINE])) for t in texts)
+        is_twin = len(mine) == 2 and any(map(twin.search, texts))
         for bodies in (*pairs_of_bodies(), *((_NUMBERED,) if is_twin else ())):
             pairs = [(a, b) for a in mine for b in mine if a is not b and _are(bodies, a, b)]
             if len(pairs) == 1:

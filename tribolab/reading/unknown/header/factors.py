@@ -29,7 +29,6 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import MICRO
 
-_MAX_LINE = 200  # characters of a line that are looked at
 _MAX_CONTACTS = 12
 _RATIO = re.compile(r"(?<![\d:.,/])(\d+(?:[.,]\d+)?)\s?:\s?(\d+(?:[.,]\d+)?)(?![\d:/])")  # 1:5
 _QUOTED = 3
@@ -43,7 +42,7 @@ def unapplied_factors(layout: Layout) -> list[str]:
 
     Each line that states one has a sentence. Factors of one and single contacts are left out.
     """
-    lines = [line[:_MAX_LINE].strip() for line in layout.text_above()]
+    lines = layout.sentences()
     if any(key_pattern("per_contact").search(label_of(line)) for line in lines):
         lines = [line for line in lines if not contacts_in(line)]  # the load is times their number
     return [sentence for line in lines if (sentence := _unapplied(line))]
@@ -55,7 +54,7 @@ def contacts_in(line: str) -> int:
     >>> contacts_in("Number of pins: 3"), contacts_in("Pin 3")
     (3, 0)
     """
-    counted = (n for n in numbers_in(line[:_MAX_LINE]) if _counts_contacts(line, n))
+    counted = (n for n in numbers_in(line) if _counts_contacts(line, n))
     return next((int(number.value) for number in counted), 0)
 
 
@@ -67,8 +66,7 @@ def unapplied_height_factors(
     present = heights[np.isfinite(heights)]
     whole = bool(present.size) and bool((present == np.round(present)).all())
     said = []
-    for line in layout.text_above(bare=True):
-        text = line[:_MAX_LINE].strip()
+    for text in layout.sentences(bare=True):
         single = single_number(text)
         factor = (
             single and not single[2] and mentions("height_factor", single[0]) and single[1] != 1
@@ -153,7 +151,7 @@ def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
 
     With `bare`, heights are meant, which may have no header.
     """
-    lines = [line[:_MAX_LINE].strip() for line in layout.text_above(bare=bare)]
+    lines = layout.sentences(bare=bare)
     found = [line for line in lines if states_calibration(line) or states_raw_zero(line)]
     return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(found[:_QUOTED]))
 

@@ -11,7 +11,6 @@ from tribolab.reading.lexicon.lexicon import alternatives, key_pattern, normalis
 from tribolab.reading.unknown.header.settings import numeric_settings, text_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 
-_MAX_LINE = 200  # characters of a line that are looked at
 _TIP_RADII = (1e-9, 1e-3)  # m, the smallest and the largest
 # units of heights with any name
 _USUAL = frozenset({"nm", "um", "µm", "\u03bcm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
@@ -80,8 +79,7 @@ def find_height_unit(layout: Layout) -> str:
     said = _length_units(layout)
     own = {unit for key, unit in said if _means("height_unit")(key) or _names_heights(key)}
     names = layout.heading.cells if layout.heading is not None and layout.width == 1 else ()
-    lines = (*layout.text_above(bare=True), *names)
-    sentences = (_HEIGHTS_IN.search(line[:_MAX_LINE]) for line in lines)
+    sentences = map(_HEIGHTS_IN.search, (*layout.sentences(bare=True), *names))
     own |= {unit for match in sentences if match and (unit := length_unit(match["unit"]))}
     if layout.width == 1 and not own:
         own = {unit for key, unit in said if _means("unit")(key)}

@@ -6,7 +6,6 @@ import re
 from collections.abc import Sequence
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
-from tribolab.reading.interpret.unit_texts import is_per_minute
 from tribolab.reading.lexicon.lexicon import (
     key_pattern,
     mentions,
@@ -15,6 +14,7 @@ from tribolab.reading.lexicon.lexicon import (
     role_of,
 )
 from tribolab.reading.text.cells import split_name
+from tribolab.reading.unit_texts import is_per_minute
 from tribolab.reading.unknown.header.factors import contacts_in
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.header import STEP_WORD
@@ -23,13 +23,11 @@ from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import WEIGHTS
 
 _STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
-_MAX_LINE = 200  # characters of a line that are looked at
 
 
 def slides_on_rim(layout: Layout) -> bool:
     """Whether a file states that the track is the outside of the rotating part (block on ring)."""
-    texts = (layout.file.path.stem, *layout.text_above())
-    return any(mentions("slides_on_rim", text[:_MAX_LINE]) for text in texts)
+    return any(mentions("slides_on_rim", text) for text in layout.named_sentences)
 
 
 def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:

@@ -12,19 +12,18 @@ from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.phrases import single_number
 from tribolab.reading.interpret.settings import amounts_of
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import (
     alternatives,
     key_pattern,
     normalise_label,
     part_pattern,
 )
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.lvm import interval_above
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_MAX_LINE = 200  # characters of a line that are looked at
 _MOST = 200  # amounts above the table that are looked at
 _THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:,\d{3})+")
 _LABEL = re.compile(r"\W*(?P<name>[^\W\d][^:=\t;\[(]*)(?:[\[(](?P<unit>[^\[\]()]+)[\])])?")
@@ -107,13 +106,11 @@ def sample_rate_unit(text: str) -> str:
 
 def _fewer_rows(layout: Layout) -> str:
     """Return the line on averaged or omitted samples; "" if there is none."""
-    for line in layout.text_above():
-        if _EVERY.search(line[:_MAX_LINE]):
-            return shown(line.strip(), 40)
-        said = single_number(line.strip()[:_MAX_LINE])
+    for line in layout.sentences():
+        said = single_number(line)
         averaged = said and key_pattern("averaging").search(normalise_label(said[0]))
-        if said and averaged and said[1] > 1 and said[1] % 1 == 0:
-            return shown(line.strip(), 40)
+        if _EVERY.search(line) or (said and averaged and said[1] > 1 and said[1] % 1 == 0):
+            return shown(line, 40)
     return ""
 
 

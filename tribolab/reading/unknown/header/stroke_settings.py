@@ -11,10 +11,10 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import is_stroke_frequency, is_stroke_length, split_unit
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import alternatives, mentions, role_of
 from tribolab.reading.numbers import numbers_in
 from tribolab.reading.text.cells import split_name
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.model import DraftColumn, Understood
 
 _CHANGED = 1.1  # times the lowest: a setting is no longer the same

@@ -9,16 +9,15 @@ from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.phrases import phrases
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import mentions, part_pattern
 from tribolab.reading.numbers import decimal
 from tribolab.reading.text.cells import split_name
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.header import STEP_WORD
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_MAX_LINE = 300  # characters of a line that are looked at
 _STEP_ZERO = re.compile(rf"{STEP_WORD}\W{{0,3}}0(?!\d)", re.IGNORECASE)
 _ROW = re.compile(r"\s*\"?[01]\"?\s*[,;\t]")  # of a programme: its first step
 STILL = "it is still in the signal"
@@ -70,8 +69,7 @@ def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> l
     held = {c.quantity for c in columns if c.used}
     if "normal_force" in held or "friction_coefficient" in held:
         return []  # the load shows where there is no contact
-    lines = (line.strip()[:_MAX_LINE] for line in layout.text_above())
-    said = [line for line in lines if _says_unloaded_start(line)]
+    said = [line for line in layout.sentences() if _says_unloaded_start(line)]
     return [f"the friction is read as it stands, although '{shown(line, 60)}'" for line in said[:1]]
 
 
@@ -109,8 +107,8 @@ def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
 
 
 def _another_line_says(name: str, layout: Layout, zero: Amount | None) -> bool:
-    lines = (line for line in layout.text_above() if zero is None or line.strip() != zero.text)
-    return any(mentions(name, line[:_MAX_LINE]) for line in lines)
+    lines = (line for line in layout.sentences() if zero is None or line != zero.text)
+    return any(mentions(name, line) for line in lines)
 
 
 def _stated(values: Sequence[Amount], unit: str) -> Amount | None:

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.reading.dialect.delimited.headers import counts_its_rows
-from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.reading.lexicon.lexicon import alternatives, known_words
+from tribolab.reading.unit_texts import is_unit
 from tribolab.reading.unknown.layout.lines import Grammar
 from tribolab.units.spellings import MICRO
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
-from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.reading.numbers import escaped, numbers_in
 from tribolab.reading.raw import limits
 from tribolab.reading.text.cells import split_row
@@ -27,6 +26,7 @@ from tribolab.reading.text.number_spelling import (
     without_commas_in_quotes,
     without_thousands,
 )
+from tribolab.reading.unit_texts import is_unit
 from tribolab.reading.unknown.layout.header import (
     STEP_WORD,
     Block,
@@ -52,6 +52,7 @@ _LAST_LINES = 20  # lines at the end that show the delimiter
 _CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
 _MAX_COLUMNS, _MIN_WIDE_ROWS = 1000, 5  # a lost line end makes few rows of many columns
 _MAX_ABOVE = 500  # lines of text above a table that are looked at
+_MAX_LINE = 300  # characters of such a line that patterns of whole sentences are sought in
 
 
 class Held(NamedTuple):
@@ -122,6 +123,15 @@ class Layout(NamedTuple):
         above = self.lines[: min(stop, _MAX_ABOVE)]
         nothing = self.heading is not None and not any(line.strip() for line in above)
         return self.foot[:_MAX_ABOVE] if nothing else above
+
+    def sentences(self, *, bare: bool = False) -> list[str]:
+        """Return the beginnings of these lines, without blanks around them."""
+        return [line.strip()[:_MAX_LINE] for line in self.text_above(bare=bare)]
+
+    @property
+    def named_sentences(self) -> list[str]:
+        """The sentences, and the file's name."""
+        return [*self.sentences(), self.file.path.stem]
 
     @property
     def units_line(self) -> int:

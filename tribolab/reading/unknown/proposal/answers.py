@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TypeVar
 
 from tribolab.core.errors import ReadError, shown
-from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.clock import find_clock
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.reading.unknown.proposal.calibration_factor import ANGLE, TORQUE, Worth, si_unit_of

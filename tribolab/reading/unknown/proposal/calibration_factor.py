@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from tribolab.core.errors import UnitError, shown
-from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unit_texts import converts
 from tribolab.units.conversion import conversion
 from tribolab.units.quantities import QUANTITIES, quantity
 

@@ -15,8 +15,8 @@ from tribolab.reading.dialect.model import Derived, Dialect
 from tribolab.reading.dialect.time_rule import Time
 from tribolab.reading.dialect.write import plain
 from tribolab.reading.interpret.amounts import Amount
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.text.dates import has_day
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.rotating_parts import torque_of
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.model import SAYS_FRICTION, SAYS_LOAD, Follows
