@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tribolab.core.errors import ReadError
+from tribolab.reading.dialect.containers import PythonReader, with_columns
 from tribolab.reading.dialect.find import is_scan, load_dialect, recognise
-from tribolab.reading.dialect.python_reader import PythonReader, with_columns
 from tribolab.reading.netcdf.seal import carries_seal
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.scans.formats.named_arrays import is_of_arrays

@@ -14,8 +14,8 @@ from tribolab.core.provenance import sha256_of_file
 from tribolab.reading.content.model import Content, Piece
 from tribolab.reading.content.steps import last_match, started
 from tribolab.reading.dialect.columns import AGAIN, first_filled, resolve, scales_of, symbols
+from tribolab.reading.dialect.containers import PythonReader
 from tribolab.reading.dialect.model import Dialect
-from tribolab.reading.dialect.python_reader import PythonReader
 from tribolab.reading.dialect.text_form import as_written
 from tribolab.reading.raw.missing_marks import beyond_range, measurable, take_marks
 from tribolab.reading.text.first_bytes import File, fits_format, peek

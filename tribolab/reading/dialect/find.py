@@ -12,26 +12,11 @@ from pydantic import ValidationError
 from tribolab.core.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
 from tribolab.core.untyped import Json
 from tribolab.reading import cures
-from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.dialect.model import Dialect as Dialect
 from tribolab.reading.raw.readers import installed_readers, is_reader
 from tribolab.reading.raw.source import Identity, check_regular, identity_of
 from tribolab.reading.schema_folder import schema_folder
 from tribolab.reading.text.first_bytes import File, peek, results_error
-
-__all__ = [
-    "Dialect",
-    "Instrument",
-    "UnknownFileError",
-    "every_dialect",
-    "is_scan",
-    "json_schema",
-    "known_dialects",
-    "load_dialect",
-    "recognise",
-    "scan_dialects",
-    "unknown",
-]
-
 
 Instrument = str | Path | Dialect  # a name, a TOML file, or a dialect
 _SHOWN = 5  # most errors of a dialect reported at once
@@ -78,7 +63,7 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
         return _load(known[str(name_or_path)])
     if is_reader(str(name_or_path)):
         # imported late for a quick start
-        from tribolab.reading.dialect.python_reader import python_reader
+        from tribolab.reading.dialect.containers import python_reader
 
         return python_reader(str(name_or_path))
     path = Path(name_or_path)
@@ -111,7 +96,7 @@ def recognise(path: str | Path) -> Dialect:
     fitting = find(file, state, tuple(known_dialects().values()))
     if not fitting and installed_readers():
         # imported late: rarely needed
-        from tribolab.reading.dialect.python_reader import recognised_by
+        from tribolab.reading.dialect.containers import recognised_by
 
         fitting = recognised_by(file.head)
     if len(fitting) == 1:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.core.errors import ReadError
+from tribolab.reading.dialect.containers import PythonReader, with_columns
 from tribolab.reading.dialect.model import Dialect
-from tribolab.reading.dialect.python_reader import PythonReader, with_columns
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name, split_row
 from tribolab.reading.text.first_bytes import File, peek

@@ -18,9 +18,9 @@ from tribolab.reading.content.read_file import read_content
 from tribolab.reading.content.steps import oldest_first
 from tribolab.reading.content.values import add_assumed, single_values, step_values, tell_assumed
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
+from tribolab.reading.dialect.containers import PythonReader
 from tribolab.reading.dialect.find import Dialect
 from tribolab.reading.dialect.formula import names_in, parse_formula
-from tribolab.reading.dialect.python_reader import PythonReader
 from tribolab.reading.dialect.text_form import as_written
 from tribolab.reading.dialect.zero_reading import free_while_zeroed, take_zeros, zeros_of_derived
 from tribolab.reading.raw.source import read_unchanged

@@ -16,6 +16,7 @@ from tribolab.core.untyped import Json
 from tribolab.core.wording import Count
 from tribolab.reading import cures
 from tribolab.reading.content.read_file import read_content
+from tribolab.reading.dialect.containers import PythonReader, with_columns
 from tribolab.reading.dialect.find import (
     Dialect,
     Instrument,
@@ -24,7 +25,6 @@ from tribolab.reading.dialect.find import (
     load_dialect,
     scan_dialects,
 )
-from tribolab.reading.dialect.python_reader import PythonReader, with_columns
 from tribolab.reading.file_patterns import is_pattern, matching
 from tribolab.reading.raw.opening import RefusedError
 from tribolab.reading.raw.source import check_regular

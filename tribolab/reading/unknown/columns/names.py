@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.reading.interpret.names import Match, is_date, matches
 from tribolab.reading.interpret.physics import Proof
 from tribolab.reading.unit_texts import converts
-from tribolab.reading.unknown.columns.dates import counted_from
+from tribolab.reading.unknown.columns.cells import counted_from
 from tribolab.reading.unknown.columns.decide import SIGNALS, decide
 from tribolab.reading.unknown.columns.evidence import RULES, Facts
 from tribolab.reading.unknown.columns.labels import bare_name

@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count, is_date
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, role_of
-from tribolab.reading.unknown.columns.dates import counted_from
+from tribolab.reading.unknown.columns.cells import counted_from
 from tribolab.reading.unknown.model import DraftColumn, Kind, other_units, time_unit
 from tribolab.units.quantities import quantity
 

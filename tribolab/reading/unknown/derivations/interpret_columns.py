@@ -12,20 +12,20 @@ from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.unit_texts import converts
-from tribolab.reading.unknown.columns.cells import Cells, read_cells
+from tribolab.reading.unknown.columns.cells import Cells, read_cells, take_dates
 from tribolab.reading.unknown.columns.clock import are_points, find_clock, in_seconds, summed
-from tribolab.reading.unknown.columns.dates import take_dates
 from tribolab.reading.unknown.columns.friction_signal import (
     against_motion,
     disagreement,
     force_or_ratio,
 )
-from tribolab.reading.unknown.columns.heights import (
+from tribolab.reading.unknown.columns.labels import (
     as_heights,
+    bare_name,
     in_stated_unit,
+    labelled,
     side_by_side,
 )
-from tribolab.reading.unknown.columns.labels import bare_name, labelled
 from tribolab.reading.unknown.columns.names import decide_by_name, has_meaning
 from tribolab.reading.unknown.columns.proven import (
     add_proven_units,

@@ -6,6 +6,7 @@ Their columns are laid out as a table below a line of names, with their numbers 
 from __future__ import annotations
 
 import datetime as dt
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,6 +18,7 @@ from tribolab.core.errors import ReadError, shown
 from tribolab.reading.content.containers import seconds_of
 from tribolab.reading.dialect.containers import name_and_unit
 from tribolab.reading.lexicon.lexicon import known_words
+from tribolab.reading.numbers import decimal
 from tribolab.reading.raw.clocks import INTERVAL_PATTERN, OneClock, on_one_clock
 from tribolab.reading.raw.containers.read import CONTAINERS, read_container
 from tribolab.reading.raw.containers.workbook import read_sheet, sheets_of
@@ -265,9 +267,5 @@ def _is_numeric(row: Sequence[object]) -> bool:
 def _is_number(cell: object) -> bool:
     """Whether a cell is a number, a moment, or a number that was typed as text."""
     if isinstance(cell, str):
-        try:
-            float(cell.strip().replace(",", "."))
-        except ValueError:
-            return False
-        return True
+        return not math.isnan(decimal(cell))
     return isinstance(cell, (int, float, *_MOMENTS)) and not isinstance(cell, bool)

@@ -23,7 +23,7 @@ from tribolab.reading.text.first_bytes import (
     peek,
     results_error,
 )
-from tribolab.reading.unknown.columns.heights import are_traces, side_by_side
+from tribolab.reading.unknown.columns.labels import are_traces, side_by_side
 from tribolab.reading.unknown.derivations.interpret_columns import first_cells_of, understand
 from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
