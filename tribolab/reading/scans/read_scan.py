@@ -232,13 +232,6 @@ def _scan_of(
     """Return the scan of one table, without isolated sentinels."""
     bare = _remove_isolated(xr.Dataset({"height": ("row", columns["height"])}, attrs=dict(attrs)))
     columns, attrs = {**columns, "height": bare.height.values}, dict(bare.attrs)
-    return _scan(path, columns, attrs, dialect)
-
-
-def _scan(
-    path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
-) -> xr.Dataset:
-    """Return the scan of one table."""
     line = _line_of(columns)
     if "y" in columns and line is None:
         scan = gridded(str(path), columns["x"], columns["y"], columns["height"])

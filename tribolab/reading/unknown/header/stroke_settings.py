@@ -41,23 +41,28 @@ def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | 
     above = find_strokes_above(values)
     if above is not None and not _change(understood, frequencies):
         return above
-    symbols: list[tuple[str, DraftColumn]] = []
-    kept: list[Amount] = []
-    if len(lengths) == 1 and not lengths[0].used:
-        symbols.append(("stroke", lengths[0]))
-        guess = ""
-    elif stroke is not None:
-        kept.append(stroke)
-    if len(frequencies) == 1:
-        symbols.append(("stroke_frequency", frequencies[0]))
-    elif frequency is not None:
-        kept.append(frequency)
-    if len(symbols) + len(kept) < 2:
+    by_column = len(lengths) == 1 and not lengths[0].used
+    return _strokes(
+        lengths[0] if by_column else stroke,
+        frequencies[0] if len(frequencies) == 1 else frequency,
+        "" if by_column else guess,
+    )
+
+
+def _strokes(
+    length: Amount | DraftColumn | None, often: Amount | DraftColumn | None, guess: str = ""
+) -> Strokes | None:
+    """Return strokes by a stated or recorded length and frequency; None if one is unknown."""
+    if length is None or often is None:
         return None
-    length = next((name for name, _ in symbols if name == "stroke"), "") or kept[0].name
-    often = next((name for name, _ in symbols if name != "stroke"), "") or kept[-1].name
-    settings = (("stroke_value", length), ("frequency_value", often))
-    return Strokes(settings, tuple(kept), tuple(symbols), guess)
+    given = {"stroke": length, "stroke_frequency": often}
+    names = [key if isinstance(one, DraftColumn) else one.name for key, one in given.items()]
+    return Strokes(
+        tuple(zip(("stroke_value", "frequency_value"), names, strict=True)),
+        tuple(one for one in given.values() if isinstance(one, Amount)),
+        tuple((key, one) for key, one in given.items() if isinstance(one, DraftColumn)),
+        guess,
+    )
 
 
 def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Strokes | None:
@@ -75,20 +80,13 @@ def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Stro
 
 def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
     """Return the length and frequency of strokes stated above the table."""
-    stroke, frequency, guess = _stated(values)
-    if stroke is None or frequency is None:
-        return None
-    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
-    return Strokes(settings, (stroke, frequency), guess=guess)
+    return _strokes(*_stated(values))
 
 
 def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | None:
     """Return strokes of a stated length, one pair per turn of a crank."""
     stroke, _, guess = _stated(values)
-    if stroke is None:
-        return None
-    settings = (("stroke_value", stroke.name), ("frequency_value", "stroke_frequency"))
-    return Strokes(settings, (stroke,), (("stroke_frequency", often),), guess)
+    return _strokes(stroke, often, guess)
 
 
 def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
