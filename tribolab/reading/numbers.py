@@ -14,6 +14,7 @@ _UNIT = (
     rf"|[^\W\d_][^\s;,:()\[\]\"，；：（）、。=≙≈≅→]*(?:\s?{_A_PER}\s?[^\W\d_]\w*)?"
 )
 _NUMBER = re.compile(rf"(?<![\d.,A-Za-z_])(?P<number>{NUMBER})(?:\s{{0,3}}(?P<unit>{_UNIT}))?")
+PLAIN_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")  # a whole cell
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 _PER = re.compile(rf"\s?{_A_PER}\s?")
 

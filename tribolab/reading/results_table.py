@@ -7,6 +7,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label, role_of
+from tribolab.reading.numbers import PLAIN_NUMBER
 
 _HEAD_LINES = 40  # above such a table
 _MAX_ROWS = 2000  # more are no measurements of a person
@@ -21,7 +22,6 @@ _CELLS = re.compile(r"\s*[;\t]\s*|\s*,(?!\d)\s*|\s{2,}")
 _BLANKS = re.compile(r"[^\S\t]{3,}")  # the search for cells takes the square of their number
 _COMMAS = re.compile(r"\s*,\s*")
 _LAST_BRACKET = re.compile(r"\s*[\[(][^\[(]*$")
-_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 
 
 class ResultsTable(NamedTuple):
@@ -88,7 +88,7 @@ def find_other_test(text: str) -> str:
     for line in lines:
         for between in (_CELLS, _COMMAS) if len(line) <= _MAX_LINE else ():
             labels = [label.strip(' "') for label in between.split(_BLANKS.sub("  ", line))]
-            if any(map(_NUMBER.fullmatch, labels)):
+            if any(map(PLAIN_NUMBER.fullmatch, labels)):
                 continue
             found = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
             if found & _OF_FRICTION or _has_moduli(labels, between, lines):
@@ -115,7 +115,7 @@ def _has_moduli(labels: list[str], between: re.Pattern[str], lines: list[str]) -
     places = [next((p for p, x in enumerate(bare) if x in known), -1) for known in moduli]
     rows = (between.split(line) for line in lines if min(places) >= 0)
     rows = (row for row in rows if len(row) > max(places))
-    return any(all(_NUMBER.fullmatch(row[p].strip()) for p in places) for row in rows)
+    return any(all(PLAIN_NUMBER.fullmatch(row[p].strip()) for p in places) for row in rows)
 
 
 # files: krlennon/mastercurves (creep, relaxation), bsaintmichel/read-rheol and
@@ -162,10 +162,10 @@ def _is(label: str, quantity: str) -> bool:
 def _rows(lines: list[str], between: re.Pattern[str], width: int) -> int:
     """Return the number of rows, if every line is one of numbers; one of units may come first."""
     cells = [between.split(line) for line in lines]
-    if cells and not any(map(_NUMBER.fullmatch, cells[0])):
+    if cells and not any(map(PLAIN_NUMBER.fullmatch, cells[0])):
         cells = cells[1:]
     for row in cells:
-        numbers = sum(_NUMBER.fullmatch(cell.strip('" ')) is not None for cell in row)
+        numbers = sum(PLAIN_NUMBER.fullmatch(cell.strip('" ')) is not None for cell in row)
         if len(row) != width or numbers < _NUMERIC * width:
             return 0
     return len(cells)

@@ -118,8 +118,9 @@ def read_scans(
     >>> scan.attrs["instrument"], scan.attrs["pitch_m"], scan.sizes["x"]
     ('drafted from the file', 2.5e-07, 4)
     """
-    if instrument is None and isinstance(paths, str | Path) and _names_several(paths):
-        paths = files_with("scan", paths)
+    if instrument is None and isinstance(paths, str | Path):
+        several = is_pattern(paths) or Path(paths).is_dir()
+        paths = files_with("scan", paths) if several else paths
     files = files_of(paths)
     units = {"x_unit": x_unit, "height_unit": height_unit}
 
@@ -133,10 +134,6 @@ def read_scans(
     if not stack:
         return [stamp(scan) for _, scan in traces]
     return stacked([file for file, _ in traces], [scan for _, scan in traces])
-
-
-def _names_several(path: str | Path) -> bool:
-    return is_pattern(path) or Path(path).is_dir()
 
 
 def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, xr.Dataset]:

@@ -146,17 +146,6 @@ def is_scan(dialect: Dialect) -> bool:
     return "height" in keys and "time" not in keys
 
 
-def scan_dialects() -> list[Dialect]:
-    """Return the known dialects of files with a profile or map.
-
-    Examples
-    --------
-    >>> "nanovea_map" in [dialect.name for dialect in scan_dialects()]
-    True
-    """
-    return [dialect for dialect in every_dialect() if is_scan(dialect)]
-
-
 def every_dialect() -> list[Dialect]:
     """Return the dialects of all known instruments, by name."""
     return [_load(path) for path in known_dialects().values()]

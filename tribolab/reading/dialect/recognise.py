@@ -33,9 +33,9 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         return "its name does not fit"
     if dialect.format == "mat":
         # imported late for a quick start
-        from tribolab.reading.raw.containers.mat import variable_names
+        from tribolab.reading.raw.containers.mat import read_variables
 
-        return _names_missing(rules, variable_names(file.path))
+        return _names_missing(rules, {found.name for found in read_variables(file.path)})
     if dialect.format == "tdms":
         # imported late for a quick start
         from tribolab.reading.raw.containers.tdms import channel_names

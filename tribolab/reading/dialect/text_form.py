@@ -11,6 +11,7 @@ from typing import NamedTuple
 from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.containers import PythonReader, with_columns
 from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.numbers import NUMBER
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name, split_row
 from tribolab.reading.text.first_bytes import File, peek
@@ -21,7 +22,6 @@ _ROWS = 20  # lines inspected below the names
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
 _OF_NUMBERS = "0123456789.,;|+-eE \t"  # characters of a row of numbers, which names no column
 _COMMA, _POINT = re.compile(r"\d,\d"), re.compile(r"\d\.\d")
-_NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?")
 
 
 def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
@@ -61,8 +61,9 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
     written = {"delimiter": delimiter, "encoding": encoding, "decimal": _decimal(below, delimiter)}
     units = dialect.header.units
     named = any(split_name(cell)[1] for cell in split_row(header, delimiter))
-    if units == "brackets" and not named and below and not _is_numbers(below[0], delimiter):
-        units = "row"
+    if units == "brackets" and not named and below:
+        numeric = any(re.fullmatch(NUMBER, cell) for cell in split_row(below[0], delimiter))
+        units = units if numeric else "row"
     return dialect.model_copy(
         update={
             "text": dialect.text.model_copy(update=written),
@@ -122,8 +123,3 @@ def _decimal(rows: list[str], delimiter: str) -> str:
         return "," if comma and not any(_POINT.search(row) for row in rows) else "."
     quoted = [text for row in rows for text in re.findall(r'"([^"]*)"', row)]
     return "," if any(_COMMA.search(text) for text in quoted) else "."
-
-
-def _is_numbers(row: str, delimiter: str) -> bool:
-    """Whether a row contains numbers, unlike a row of units."""
-    return any(_NUMBER.fullmatch(cell) for cell in split_row(row, delimiter))

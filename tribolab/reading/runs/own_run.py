@@ -58,12 +58,15 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     if "time" not in run.coords or run.sizes.get("time", 0) == 0:
         what = "this netCDF or HDF5 file holds no run: it has no coordinate 'time'"
         raise UnknownFileError(what, where=path, cure=cure)
-    strange = [str(name) for name in run.variables if not _along_time(run[name])]
+    numeric = {str(name) for name in run.variables if run[name].dtype.kind in _NUMBERS}
+    along = {str(name) for name in run.variables if run[name].dims in (("time",), ())}
+    strange = [str(name) for name in run.variables if name not in numeric & along]
     for name in strange:
         if name == "time" or name in QUANTITIES:
             dims = ", ".join(map(str, run[name].dims))
+            kind = "numbers" if name in numeric else "text or dates"
             raise ReadError(
-                f"{path}: variable '{name}' ({dims}) holds {_kind(run[name])}; a run's quantities "
+                f"{path}: variable '{name}' ({dims}) holds {kind}; a run's quantities "
                 "are numbers along (time): write it so, or leave it out"
             )
     run = run.drop_vars(strange)
@@ -78,14 +81,6 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
         known = str(run.attrs.get("columns_not_used", ""))
         run.attrs["columns_not_used"] = "; ".join(filter(None, [known, *strange]))
     return run
-
-
-def _along_time(variable: xr.DataArray) -> bool:
-    return variable.dims in (("time",), ()) and variable.dtype.kind in _NUMBERS
-
-
-def _kind(variable: xr.DataArray) -> str:
-    return "numbers" if variable.dtype.kind in _NUMBERS else "text or dates"
 
 
 def _attributes(attrs: Mapping[Any, Any]) -> Json:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern, words_of
-from tribolab.reading.numbers import decimal, numbers_in
+from tribolab.reading.numbers import PLAIN_NUMBER, decimal, numbers_in
 from tribolab.reading.scans.grid import rounder_pitch
 from tribolab.reading.scans.limits import SAME_RANGE
 from tribolab.reading.scans.unit_words import (
@@ -30,7 +30,6 @@ _MAX_LINE = 300  # most characters of a line
 _MAX_NUMBERS = 2  # in an entry; more are a date, a time, or a row of results
 _BLANKED = str.maketrans(";[](){}", "       ")  # between a number and its unit
 _COMMA = re.compile(r"(?<!\d),|,(?!\d)")
-_CELL_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 
 
 class MapHeader(NamedTuple):
@@ -182,7 +181,7 @@ def _split_entries(text: str, *, commas_part: bool) -> list[str]:
         return [text]
     entries: list[list[str]] = []
     for cell in cells[1:]:
-        is_value = _CELL_NUMBER.fullmatch(cell) or unit_of_length(cell)
+        is_value = PLAIN_NUMBER.fullmatch(cell) or unit_of_length(cell)
         if not entries or (len(entries[-1]) > 1 and not is_value):
             entries.append([cell])
         else:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -23,7 +22,6 @@ from tribolab.reading.dialect.find import (
     every_dialect,
     is_scan,
     load_dialect,
-    scan_dialects,
 )
 from tribolab.reading.file_patterns import is_pattern, matching
 from tribolab.reading.raw.opening import RefusedError
@@ -72,7 +70,7 @@ def read_known_scans(
     if isinstance(dialect, PythonReader) and files:
         dialect = with_columns(dialect, Path(files[0]))
     if dialect is not None and not is_scan(dialect):
-        scanning = ", ".join(d.name for d in scan_dialects())
+        scanning = ", ".join(d.name for d in every_dialect() if is_scan(d))
         raise ReadError(
             f"instrument '{dialect.name}' writes no profiles (no column is 'x' and 'height', and "
             f"there is no pitch); those that do are {scanning}"
@@ -95,11 +93,6 @@ def files_of(paths: PathLike | Sequence[PathLike]) -> list[Path]:
     for path in given:
         files.extend(matching(path) if is_pattern(path) else [Path(path)])
     return files
-
-
-@functools.cache  # dialects do not change while a program runs
-def _every_dialect() -> tuple[Dialect, ...]:
-    return tuple(every_dialect())
 
 
 def _read(
@@ -173,7 +166,7 @@ def _recognised(path: Path) -> Dialect | None:
         return None
     if error := results_error(file.head, path):
         raise error
-    known = [d for d in _every_dialect() if mismatch(file, d) is None]
+    known = [d for d in every_dialect() if mismatch(file, d) is None]
     fitting = [d for d in known if is_scan(d)]
     if known and not fitting:
         what = f"this looks like a run ({shown(known[0].title)})"

@@ -153,14 +153,3 @@ def read_mat(path: Path) -> RawFile:
 
 
 _OF_UNITS = keys_of("unit")
-
-
-def variable_names(path: Path) -> set[str]:
-    """Return the names of the variables in a MAT file.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged.
-    """
-    return {variable.name for variable in read_variables(path)}

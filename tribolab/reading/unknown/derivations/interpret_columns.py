@@ -10,7 +10,6 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.text.cells import split_row
 from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.cells import Cells, read_cells, take_dates
 from tribolab.reading.unknown.columns.clock import are_points, find_clock, in_seconds, summed
@@ -315,8 +314,3 @@ def _likely_unit(numbers: np.ndarray, pitch: Amount | None) -> str:
     step = pitch.si("m") if pitch is not None else 0.0
     reach = float(np.nanmax(numbers) - np.nanmin(numbers)) if np.isfinite(numbers).any() else 0.0
     return "nm" if 0 < step * len(numbers) * _REACH < 1e-6 * reach else "um"
-
-
-def first_cells_of(layout: Layout, number: int) -> list[list[str]]:
-    """Cells of the first rows, as written in the file."""
-    return [split_row(line, layout.delimiter) for line in layout.rows(number)]

@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Given, derive
 from tribolab.reading.interpret.names import is_stroke_frequency
-from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
+from tribolab.reading.lexicon.lexicon import key_pattern, mentions, normalise_label, part_pattern
 from tribolab.reading.numbers import escaped
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unit_texts import converts
@@ -40,7 +40,6 @@ from tribolab.reading.unknown.header.run_amounts import (
     find_ring,
     find_slide_roll_ratio,
     is_at_arm,
-    slides_on_rim,
     stated_rotation,
 )
 from tribolab.reading.unknown.header.settings import numeric_settings, text_settings
@@ -214,7 +213,8 @@ def _add_track(known: _Facts) -> None:
     if (agreed := confirmed_value(values, understood.agreed, "radius")) is not None:
         known.add_value("track_radius", agreed._replace(name="track_radius", to="m", guess=""))
     known.add_column("track_radius", "radius", radius_of(known.columns))
-    rim = slides_on_rim(known.layout)
+    # block on ring: the track is the outside of what turns
+    rim = any(mentions("slides_on_rim", text) for text in known.layout.named_sentences)
     radius, ring = find_radius(values, rim=rim), None if rim else find_ring(values)
     if ring is not None and (radius is None or radius.guess):
         for side in ring:

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.lexicon.lexicon import (
     key_pattern,
-    mentions,
     normalise_label,
     part_pattern,
     role_of,
@@ -23,11 +22,6 @@ from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import WEIGHTS
 
 _STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
-
-
-def slides_on_rim(layout: Layout) -> bool:
-    """Whether a file states that the track is the outside of the rotating part (block on ring)."""
-    return any(mentions("slides_on_rim", text) for text in layout.named_sentences)
 
 
 def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:

@@ -64,17 +64,13 @@ def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> W
     parts = _PER.match(unit)
     if parts and (name := _measured(parts[1], names)) is not None:
         return Worth(name, parts[1], scale * _ratio(read_unit, parts[2]))
-    known = " or ".join(_called(name) for name in names)
+    known = " or ".join(f"{name}, e.g. '{si_unit_of(name)}'" for name in names)
     raise UnitError(f"'{shown(text, 40)}' is no unit of {known}, nor an amount of it")
 
 
 def si_unit_of(name: str) -> str:
     """SI unit of a quantity, of a torque, or of an angle."""
     return _NO_QUANTITY.get(name) or quantity(name).unit
-
-
-def _called(name: str) -> str:
-    return f"{name}, e.g. '{si_unit_of(name)}'"
 
 
 def _measured(unit: str, names: Sequence[str]) -> str | None:

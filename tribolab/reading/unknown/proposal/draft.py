@@ -14,7 +14,7 @@ from tribolab.core.aliases import PathLike
 from tribolab.core.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.reading.dialect.find import recognise
 from tribolab.reading.interpret.names import matches, split_unit
-from tribolab.reading.text.cells import split_name
+from tribolab.reading.text.cells import split_name, split_row
 from tribolab.reading.text.first_bytes import (
     File,
     is_results,
@@ -24,7 +24,7 @@ from tribolab.reading.text.first_bytes import (
     results_error,
 )
 from tribolab.reading.unknown.columns.labels import are_traces, side_by_side
-from tribolab.reading.unknown.derivations.interpret_columns import first_cells_of, understand
+from tribolab.reading.unknown.derivations.interpret_columns import understand
 from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
 from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
@@ -95,7 +95,7 @@ def _drafted(file: File, name: str) -> Draft:
         layout=layout,
         understood=understood,
         answer="" if understood.kind != "table" else _answer(file, understood),
-        cells=tuple(map(tuple, first_cells_of(layout, SHOWN))),
+        cells=tuple(tuple(split_row(line, layout.delimiter)) for line in layout.rows(SHOWN)),
         known=_known(file),
     )
     if draft.kind == "table" and _is_heights(draft):

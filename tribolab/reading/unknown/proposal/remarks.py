@@ -163,13 +163,10 @@ def _proposed(column: DraftColumn, numbers: np.ndarray) -> str:
         note = column.note or "not used"
         about = [f"column {column.place}{label}: {_range(column, numbers)}; {note}"]
     content = {"quantity": "?"} | column_content(column)
-    if column.unit is None and column.file_unit is None and not _has_no_unit(column):
+    pure = column.quantity is not None and quantity(column.quantity).unit == "1"
+    if column.unit is None and column.file_unit is None and not pure:
         content["unit"] = "?"
     return "\n".join([*_lines(about), *commented(table_lines("[[column]]", content, {}))])
-
-
-def _has_no_unit(column: DraftColumn) -> bool:
-    return column.quantity is not None and quantity(column.quantity).unit == "1"
 
 
 def _range(column: DraftColumn, numbers: np.ndarray) -> str:
