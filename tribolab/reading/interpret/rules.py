@@ -71,20 +71,12 @@ class Rule(NamedTuple):
 @functools.cache
 def rules() -> tuple[Rule, ...]:
     """Return the rules of physics.toml, in order."""
-    return tuple(map(_rule, _toml()["rule"]))
-
-
-def _rule(block: Mapping[str, Any]) -> Rule:
-    return Rule(
-        block["gives"],
-        block["formula"],
-        block.get("rate", False),
-        block.get("use", "both"),
-        block.get("if", ""),
-        tuple(block.get("asks", ())),
-        block.get("doubt", ""),
-        block.get("speed", ""),
+    fields = ("gives", "formula", "rate", "use", "if", "asks", "doubt", "speed")
+    defaults = Rule("", "")
+    made = (
+        [block.get(*one) for one in zip(fields, defaults, strict=True)] for block in _toml()["rule"]
     )
+    return tuple(Rule._make(tuple(v) if isinstance(v, list) else v for v in rule) for rule in made)
 
 
 def units_written() -> Mapping[str, list[str]]:

@@ -28,11 +28,9 @@ def seal(path: Path) -> None:
 def unseal(path: Path) -> None:
     """Remove the seal before the file is changed."""
     with path.open("r+b") as file:
-        size = file.seek(0, os.SEEK_END)
-        if size > _LENGTH:
-            file.seek(size - _LENGTH)
-            if file.read(len(_MARK)) == _MARK:
-                file.truncate(size - _LENGTH)
+        left, mark = _mark_of(file)
+        if mark:
+            file.truncate(left)
 
 
 def carries_seal(path: Path) -> bool:

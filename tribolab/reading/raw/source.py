@@ -52,22 +52,18 @@ class Identity(NamedTuple):
 
 def identity_of(path: Path) -> Identity | None:
     """Return the identity of a file; None if it may still be written, or does not exist."""
+    found = _identity_and_age(path)
+    return found[0] if found is not None and found[1] > limits.SURELY_OLD.value else None
+
+
+def _identity_and_age(path: Path) -> tuple[Identity, float] | None:
+    """Return the identity of a regular file, and its age [s]; None of any other."""
     with contextlib.suppress(OSError, ValueError):
         now = path.stat()
-        age = time.time() - max(now.st_mtime, now.st_ctime)
-        if stat.S_ISREG(now.st_mode) and age > limits.SURELY_OLD.value:
-            return Identity(now.st_size, now.st_mtime_ns, now.st_ctime_ns, now.st_ino)
+        if stat.S_ISREG(now.st_mode):
+            identity = Identity(now.st_size, now.st_mtime_ns, now.st_ctime_ns, now.st_ino)
+            return identity, time.time() - max(now.st_mtime, now.st_ctime)
     return None
-
-
-class _State(NamedTuple):
-    """State of a file that reveals writing: size, times [ns], inode and checksum."""
-
-    size: int
-    written: int
-    changed: int
-    inode: int
-    sha256: str
 
 
 def read_unchanged(paths: Iterable[Path], read: Callable[[], R]) -> R:
@@ -104,9 +100,15 @@ def read_unchanged(paths: Iterable[Path], read: Callable[[], R]) -> R:
     path, first, last = next(
         each for each in zip(paths, before, after, strict=True) if each[1] != each[2]
     )
-    how = f"from {first.size} to {last.size} bytes" if first and last else "it was replaced"
-    if first and last and first.size == last.size:
-        how = f"{last.size} bytes long before and after"
+    how = "it was replaced"
+    if first and last:
+        sizes = first[0].size, last[0].size
+        alike = sizes[0] == sizes[1]
+        how = (
+            f"{sizes[1]} bytes long before and after"
+            if alike
+            else "from {} to {} bytes".format(*sizes)
+        )
     raise ReadError(
         f"the file changes while it is read ({how}), so no checksum describes what is analysed",
         where=path,
@@ -114,17 +116,14 @@ def read_unchanged(paths: Iterable[Path], read: Callable[[], R]) -> R:
     )
 
 
-def _state(path: Path) -> _State | None:
-    """Return the state of a file; None if it does not exist.
+def _state(path: Path) -> tuple[Identity, str] | None:
+    """Return the identity of a file and its checksum; None if it does not exist.
 
     The checksum is needed because file systems and networks update times late and coarsely. For a
     file that is long at rest the times suffice.
     """
     with contextlib.suppress(OSError, ValueError):
-        now = path.stat()
-        if not stat.S_ISREG(now.st_mode):
-            return None
-        age = time.time() - max(now.st_mtime, now.st_ctime)
-        sha256 = sha256_of_file(path) if age < limits.AT_REST.value else ""
-        return _State(now.st_size, now.st_mtime_ns, now.st_ctime_ns, now.st_ino, sha256)
+        if (found := _identity_and_age(path)) is not None:
+            identity, age = found
+            return identity, sha256_of_file(path) if age < limits.AT_REST.value else ""
     return None
