@@ -6,7 +6,7 @@ import pytest
 import tribolab as tl
 from tribolab.core.errors import ReadError
 from tribolab.reading.clocks.shift import estimate_clock_shift
-from tribolab.reading.runs.companion import describe_companion
+from tribolab.reading.runs.file_facts import describe_companion
 from tribolab.reading.runs.logs import group_files
 
 FASTEST = 1e-3  # s, sample period of the fastest strokes

@@ -25,8 +25,13 @@ from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
 from tribolab.reading.moduli import is_modulus_file, read_modulus_table
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.source import check_regular
-from tribolab.reading.runs.companion import CompanionFacts, describe_companion, has_companion
-from tribolab.reading.runs.file_facts import FileFacts, file_facts
+from tribolab.reading.runs.file_facts import (
+    CompanionFacts,
+    FileFacts,
+    describe_companion,
+    file_facts,
+    has_companion,
+)
 from tribolab.reading.runs.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.reading.runs.read_run import read_log as known_log
 from tribolab.reading.text.cells import split_name
@@ -378,7 +383,7 @@ def companion_lines(facts: CompanionFacts) -> list[str]:
     Parameters
     ----------
     facts
-        From `tribolab.reading.runs.companion.describe_companion`.
+        From `tribolab.reading.runs.file_facts.describe_companion`.
     """
     if "missing" in facts:
         return [f"  companion log: {facts['missing']} is not there"]

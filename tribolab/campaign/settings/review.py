@@ -15,7 +15,7 @@ from tribolab.campaign.settings.toml_file import Opened, open_settings, settings
 from tribolab.core.errors import TribolabError, nearest, shown
 from tribolab.core.untyped import Json
 from tribolab.friction.decisions.decision import Decision
-from tribolab.reading.dialect.switches import NoSwitches
+from tribolab.reading.dialect.checked_text import NoSwitches
 
 REVIEW_FILE = "review.toml"
 REVIEW_SCHEMA_FILE = "review.schema.json"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import ConfigDict
 
-from tribolab.reading.dialect.switches import NoSwitches
+from tribolab.reading.dialect.checked_text import NoSwitches
 
 
 class Table(NoSwitches):

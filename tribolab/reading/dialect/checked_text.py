@@ -1,17 +1,16 @@
-"""Validated texts of a dialect, and the base class of its rules."""
+"""Validated texts of a dialect, and the base classes of its rules."""
 
 from __future__ import annotations
 
 import codecs
 import re
 from collections.abc import Callable
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
 from tribolab.core.errors import TribolabError, shown
 from tribolab.reading.dialect.formula import parse_formula
-from tribolab.reading.dialect.switches import NoSwitches
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.reading.text.bounded_patterns import PatternError, guarded
 from tribolab.units.conversion import conversion
@@ -96,6 +95,33 @@ Formula = Annotated[str, _validator(parse_formula)]
 ZeroText = Annotated[str, _validator(parse_zero)]
 Symbol = Annotated[str, Field(pattern=r"^[A-Za-z_]\w*$")]
 Sign = Literal[1, -1]
+
+
+class NoSwitches(BaseModel):
+    """Model in which only switches may be true or false.
+
+    Examples
+    --------
+    >>> class Rule(NoSwitches):
+    ...     share: float = 1.0
+    ...     optional: bool = False
+    >>> Rule(share=0.5, optional=True)
+    Rule(share=0.5, optional=True)
+    """
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _no_switch(cls, value: Any, info: ValidationInfo) -> Any:
+        held = value if isinstance(value, list | tuple) else [value]
+        switches = [item for item in held if isinstance(item, bool)]
+        if switches and not _takes_switch(cls.model_fields[str(info.field_name)].annotation):
+            told = str(switches[0]).lower()
+            raise ValueError(f"{told} stands where a number or a text belongs")
+        return value
+
+
+def _takes_switch(annotation: Any) -> bool:
+    return annotation is bool or any(_takes_switch(part) for part in get_args(annotation))
 
 
 class Strict(NoSwitches):
