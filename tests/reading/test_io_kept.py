@@ -33,7 +33,7 @@ def test_what_is_kept_is_what_is_read(file):
 def test_a_file_is_opened_once_for_its_short_groups(file, monkeypatch):
     first = read_kept(file, "short")
     monkeypatch.setattr(kept, "read_netcdf", None)
-    monkeypatch.setattr(kept, "read_short", None)
+    monkeypatch.setattr(kept, "read_groups", None)
     xr.testing.assert_identical(read_kept(file, "short"), first)
     assert read_kept(file).attrs["name"] == "a"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import tempfile
 from collections.abc import Iterator
 from itertools import zip_longest
@@ -18,7 +17,7 @@ from tribolab.campaign.store.data_files import digest
 from tribolab.campaign.store.ledger import Ledger, repair
 from tribolab.comparison.folder import open_folder
 from tribolab.core.errors import ConfigError, OutputError, ReadError, brief
-from tribolab.reading.netcdf.netcdf import read_short
+from tribolab.reading.netcdf.netcdf import read_groups
 from tribolab.version import __version__
 
 # entries that may differ: time and place of the computation
@@ -138,7 +137,7 @@ def _differing_entries(one: object, other: object, at: str = "") -> Iterator[str
 
 
 def _unlike_data(there: Path, made: Path) -> str:
-    one, other = (read_short(path, math.inf) for path in (there, made))
+    one, other = (read_groups(path) for path in (there, made))
     if set(one) != set(other):
         return "its groups"
     unlike = (group for group in one if digest(one[group]) != digest(other[group]))

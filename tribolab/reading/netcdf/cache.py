@@ -11,7 +11,7 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.reading.netcdf.netcdf import read_netcdf, read_short
+from tribolab.reading.netcdf.netcdf import read_groups, read_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ class KeptReading:
         identity = (str(path.absolute()), state.st_size, state.st_mtime_ns, state.st_ino)
         with self._lock:
             if identity not in self._files:
-                self._files[identity] = read_short(path, SHORT)
+                self._files[identity] = read_groups(path, most=SHORT)
                 self._values += _size(self._files[identity])
             self._files.move_to_end(identity)
             while self._values > _MAX_CACHED and len(self._files) > 1:

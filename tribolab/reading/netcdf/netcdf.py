@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import sys
 import tempfile
 import threading
@@ -179,10 +180,11 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
 
 def read_groups(
     path: str | Path,
-    groups: Iterable[str | None],
+    groups: Iterable[str | None] | None = None,
     *,
     optional: bool = False,
     only: Mapping[str, Collection[str]] | None = None,
+    most: float = math.inf,
 ) -> dict[str | None, xr.Dataset]:
     """Read several groups of a file, opened only once; see `read_netcdf`.
 
@@ -191,76 +193,53 @@ def read_groups(
     path
         The file.
     groups
-        Names of the groups; None is the root.
+        Names of the groups; None is the root. By default the root and all groups.
     optional
         Whether to ignore missing groups.
     only
         Variables to read, by group; by default all. Missing variables are ignored.
+    most
+        Most values in all variables of a group; a group with more is left out.
 
     Raises
     ------
     ReadError
         As for `read_netcdf`.
     """
+    path = Path(path)
+    check_regular(path)
+    with contextlib.suppress(OSError):  # the reader reports why a file cannot be opened
+        check_seal(path)
     wanted = {name: tuple(names) for name, names in (only or {}).items()}
-    return _read_groups(_check_seal_of(Path(path)), list(groups), optional=optional, only=wanted)
+    names = None if groups is None else list(groups)
+    return _read_groups(path, names, optional=optional, only=wanted, most=most)
 
 
 @isolated("netCDF4", "h5py", "xarray")
 def _read_groups(
-    path: Path, groups: list[str | None], *, optional: bool, only: Mapping[str, Collection[str]]
+    path: Path,
+    groups: list[str | None] | None,
+    *,
+    optional: bool,
+    only: Mapping[str, Collection[str]],
+    most: float,
 ) -> dict[str | None, xr.Dataset]:
     datasets = {}
     with _whole(path) as file:
         there = list(file.groups)
-        for name in groups:
+        for name in [None, *there] if groups is None else groups:
             group = ("run" if "run" in there else None) if name == "run?" else name
-            if group is None or group in there:
-                datasets[name] = _group(file, group, only.get(name or ""))
-            elif not optional:
+            if group is not None and group not in there:
+                if optional:
+                    continue
                 raise ReadError(
                     f"{path}: there is no group '{shown(group)}'; there are "
                     f"{', '.join(there) or 'none'}"
                 )
+            stored = file if group is None else file[group]
+            if sum(variable.size for variable in stored.variables.values()) <= most:
+                datasets[name] = _group(file, group, only.get(name or ""))
     return datasets
-
-
-def read_short(path: str | Path, most: float) -> dict[str | None, xr.Dataset]:
-    """Read all groups of a file that are short, and the root if it is.
-
-    Parameters
-    ----------
-    path
-        The file.
-    most
-        Most values in all variables of a group; infinity for all groups.
-
-    Raises
-    ------
-    ReadError
-        As for `read_netcdf`.
-    """
-    return _read_short(_check_seal_of(Path(path)), most)
-
-
-@isolated("netCDF4", "h5py", "xarray")
-def _read_short(path: Path, most: float) -> dict[str | None, xr.Dataset]:
-    with _whole(path) as file:
-        short: list[str | None] = [None] if _values(file) <= most else []
-        short += [name for name, group in file.groups.items() if _values(group) <= most]
-        return {name: _group(file, name, None) for name in short}
-
-
-def _values(group: netCDF4.Dataset) -> int:
-    return sum(variable.size for variable in group.variables.values())
-
-
-def _check_seal_of(path: Path) -> Path:
-    """Return the path of a file after checking its seal, if it has one."""
-    check_regular(path)
-    with contextlib.suppress(OSError):  # the reader reports why a file cannot be opened
-        check_seal(path)
-    return path
 
 
 @contextlib.contextmanager
