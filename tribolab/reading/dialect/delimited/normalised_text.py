@@ -46,16 +46,23 @@ def _normalise_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | N
     spaced = dialect.text.delimiter == "whitespace"
     if not (wide or odd_ends or spaced):
         return None
-    try:
-        content = head if head_only else file.path.read_bytes()
-        if wide:
-            marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
-            decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
-            content = line_feeds(decoder.decode(content, final=not head_only)).encode()
-    except (OSError, UnicodeDecodeError) as error:
-        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
+    content = _content(file, head_only)
+    if wide:
+        marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
+        decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
+        try:
+            content = decoder.decode(content, final=not head_only).encode()
+        except UnicodeDecodeError as error:
+            raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
     content = line_feeds(content)
     return _tabs_for_blanks(content) if spaced else content
+
+
+def _content(file: File, head_only: bool) -> bytes:
+    try:
+        return file.head if head_only else file.path.read_bytes()
+    except OSError as error:
+        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
 
 
 def line_feeds(content: AnyStr) -> AnyStr:
@@ -88,10 +95,7 @@ def _skip_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | 
     """Return the content without the lines below the first header that the dialect skips."""
     if dialect.text.skip_lines is None:
         return content
-    try:
-        content = file.path.read_bytes() if content is None else content
-    except OSError as error:
-        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
+    content = _content(file, False) if content is None else content
     header = dialect.header
     starts = header_starts(file, content, dialect)
     first = content.count(b"\n", 0, starts[0])
@@ -134,11 +138,7 @@ def _normalise_numbers(
     head_only: bool,
 ) -> bytes:
     """Return the content with normalised numbers in the table; the preamble is unchanged."""
-    if content is None:
-        try:
-            content = file.head if head_only else file.path.read_bytes()
-        except OSError as error:
-            raise ReadError("the file cannot be read", where=file.path) from error
+    content = _content(file, head_only) if content is None else content
     start = header_starts(file, content, dialect)[0]
     encoding = table_encoding(dialect)
     table = respell(content[start:].decode(encoding, errors="surrogateescape"))
