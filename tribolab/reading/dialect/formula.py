@@ -21,7 +21,6 @@ from tribolab.units.conversion import base_unit, registry, to_si
 
 _MAX_FORMULA = 300  # characters
 _QUANTITY = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(?P<unit>.*?)\s*$")
-_SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 
 Dimension = tuple[tuple[str, float], ...]  # base dimensions and their powers, in order of name
 
@@ -31,15 +30,6 @@ class Operand(NamedTuple):
 
     value: Array | float
     dimension: Dimension
-
-
-class Node(NamedTuple):
-    """Part of a formula: "number", "name" or an operator with its operands."""
-
-    kind: str
-    text: str = ""
-    operand: Operand | None = None
-    parts: tuple[Node, ...] = ()
 
 
 @functools.lru_cache(maxsize=256)
@@ -63,7 +53,7 @@ def in_base_units(value: Array | float, si_unit: str) -> Operand:
 
 
 @functools.lru_cache(maxsize=128)
-def parse_formula(text: str) -> Node:
+def parse_formula(text: str) -> ast.expr:
     """Parse a formula.
 
     Parameters
@@ -90,14 +80,13 @@ def parse_formula(text: str) -> Node:
             tree = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
         raise _wrong(text, str(error)) from error
-    return _node(tree.body, text)
+    _check(tree.body, text)
+    return tree.body
 
 
-def names_in(node: Node) -> set[str]:
+def names_in(formula: ast.expr) -> set[str]:
     """Return the names that a formula needs, except ``pi``."""
-    if node.kind == "name":
-        return {node.text} - {"pi"}
-    return set().union(*(names_in(part) for part in node.parts))
+    return {part.id for part in ast.walk(formula) if isinstance(part, ast.Name)} - {"pi"}
 
 
 def evaluate(text: str, known: Mapping[str, Operand], si_unit: str) -> Array | float:
@@ -141,29 +130,35 @@ def evaluate(text: str, known: Mapping[str, Operand], si_unit: str) -> Array | f
     return result.value
 
 
-def _value(node: Node, known: Mapping[str, Operand], text: str) -> Operand:
-    if node.operand is not None:
-        return node.operand
-    if node.kind == "name":
-        if node.text not in known:
-            hint = nearest(node.text, known)
-            raise UnitError(f"formula '{shown(text)}': there is no '{shown(node.text)}'{hint}")
-        return known[node.text]
-    left, *others = (_value(part, known, text) for part in node.parts)
-    if not others:
-        return left._replace(value=-left.value)
-    (right,) = others
-    if node.kind in "+-":
+def _value(tree: ast.expr, known: Mapping[str, Operand], text: str) -> Operand:
+    match tree:
+        case ast.Name(id="pi"):
+            return Operand(np.pi, ())
+        case ast.Name(id=name):
+            if name not in known:
+                hint = nearest(name, known)
+                raise UnitError(f"formula '{shown(text)}': there is no '{shown(name)}'{hint}")
+            return known[name]
+        case ast.Constant(value=str() as said):
+            return _quantity(said, text)
+        case ast.Constant(value=number):
+            return Operand(float(number), ())  # type: ignore[arg-type]  # as checked
+        case ast.UnaryOp(operand=inner):
+            operand = _value(inner, known, text)
+            return operand._replace(value=-operand.value)
+    assert isinstance(tree, ast.BinOp)  # as checked
+    left, right = (_value(side, known, text) for side in (tree.left, tree.right))
+    if isinstance(tree.op, ast.Add | ast.Sub):
         if left.dimension != right.dimension:
             raise UnitError(
                 f"formula '{shown(text)}': {_written(left.dimension)} and "
                 f"{_written(right.dimension)} cannot be added"
             )
-        value = left.value + right.value if node.kind == "+" else left.value - right.value
-        return left._replace(value=value)
-    power = 1.0 if node.kind == "*" else -1.0
-    value = left.value * right.value if node.kind == "*" else np.divide(left.value, right.value)
-    return Operand(value, _multiplied(left.dimension, right.dimension, power))
+        added = isinstance(tree.op, ast.Add)
+        return left._replace(value=left.value + right.value if added else left.value - right.value)
+    times = isinstance(tree.op, ast.Mult)
+    value = left.value * right.value if times else np.divide(left.value, right.value)
+    return Operand(value, _multiplied(left.dimension, right.dimension, 1.0 if times else -1.0))
 
 
 def _multiplied(left: Dimension, right: Dimension, power: float) -> Dimension:
@@ -187,21 +182,22 @@ def _written(dimension: Dimension) -> str:
     return (product(above) or "1") + (f"/{product(below)}" if below else "") if dimension else "1"
 
 
-def _node(tree: ast.expr, text: str) -> Node:
-    """Return a part of a formula; raise for any other Python syntax."""
+def _check(tree: ast.expr, text: str) -> None:
+    """Raise for any Python syntax that is not part of a formula."""
     match tree:
-        case ast.BinOp(op=op) if type(op) in _SIGNS:
-            sides = (_node(tree.left, text), _node(tree.right, text))
-            return Node(_SIGNS[type(op)], parts=sides)
+        case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div()):
+            _check(tree.left, text)
+            _check(tree.right, text)
         case ast.UnaryOp(op=ast.USub()):
-            return Node("-", parts=(_node(tree.operand, text),))
-        case ast.Name(id=name):
-            return Node("name", name, Operand(np.pi, ()) if name == "pi" else None)
+            _check(tree.operand, text)
         case ast.Constant(value=str() as said) if _written_as(tree, text) == f"'{said}'":
-            return Node("number", operand=_quantity(said, text))
+            _quantity(said, text)
+        case ast.Name():
+            pass
         case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-            return Node("number", operand=Operand(float(number), ()))
-    raise _wrong(text, f"'{shown(_written_as(tree, text), 20)}' is not allowed")
+            pass
+        case _:
+            raise _wrong(text, f"'{shown(_written_as(tree, text), 20)}' is not allowed")
 
 
 def _written_as(tree: ast.expr, text: str) -> str:
@@ -215,6 +211,7 @@ def _wrong(text: str, why: str) -> UnitError:
     )
 
 
+@functools.lru_cache(maxsize=128)
 def _quantity(text: str, formula: str) -> Operand:
     match = _QUANTITY.match(text)
     if match is None:

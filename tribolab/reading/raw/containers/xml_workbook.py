@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
-from xml.parsers import expat
+from xml.etree.ElementTree import Element
 
 from tribolab.core.errors import ReadError
+from tribolab.reading.raw.xml_safety import parsed
 
 _MARK = b"urn:schemas-microsoft-com:office:spreadsheet"
 _END = b"Workbook>"
 _HEAD = 4096  # bytes at either end sufficient to recognise it
 _MAX_CELLS = 5_000_000  # all cells are in memory at once
-_BLOCK = 1 << 20
 Cell = str | float
 
 
@@ -55,30 +54,17 @@ class XmlWorkbook:
     Raises
     ------
     ReadError
-        If it is not well-formed XML, declares entities, or is larger than a table of numbers.
+        If it is not well-formed XML, or is larger than a table of numbers.
     """
 
     def __init__(self, path: Path) -> None:
         refuse_cut_short(path)
-        self._path = path
-        self._sheets: dict[str, list[list[Cell]]] = {}
-        self._rows: list[list[Cell]] = []
-        self._row: list[Cell] = []
-        self._text: list[str] | None = None
-        self._is_number = False
-        self._place = self._cells = 0
-        parser = expat.ParserCreate(namespace_separator=" ")
-        parser.StartElementHandler = self._begin
-        parser.EndElementHandler = self._end
-        parser.CharacterDataHandler = self._add_text
-        parser.EntityDeclHandler = self._refuse  # entities are not expanded
-        try:
-            with path.open("rb") as file:
-                while block := file.read(_BLOCK):
-                    parser.Parse(block, False)
-            parser.Parse(b"", True)
-        except expat.ExpatError as error:
-            raise ReadError(f"the workbook is damaged: {error}", where=path) from error
+        self._path, self._cells = path, 0
+        sheets = parsed(path, path.read_bytes()).iter("Worksheet")
+        self._sheets = {
+            _attribute(sheet, "Name") or str(number): self._rows(sheet)
+            for number, sheet in enumerate(sheets, 1)
+        }
 
     @property
     def sheet_names(self) -> list[str]:
@@ -89,43 +75,32 @@ class XmlWorkbook:
         """Return one of the sheets."""
         return XmlSheet(self._sheets[name])
 
-    def _refuse(self, *_: object) -> None:
-        raise ReadError("its XML defines entities, as no instrument writes them", where=self._path)
+    def _rows(self, sheet: Element) -> list[list[Cell]]:
+        rows: list[list[Cell]] = []
+        for row in sheet.iter("Row"):
+            self._fill(rows, row, [])
+            rows.append([])
+            for cell in row.iter("Cell"):
+                self._fill(rows[-1], cell, "")
+                rows[-1].append(_value(cell.find("Data")))
+        return rows
 
-    def _begin(self, tag: str, attributes: dict[str, str]) -> None:
-        kind = tag.rpartition(" ")[2]
-        values = {name.rpartition(" ")[2]: value for name, value in attributes.items()}
-        if kind == "Worksheet":
-            self._rows = self._sheets.setdefault(values.get("Name", str(len(self._sheets) + 1)), [])
-        elif kind == "Row":
-            self._row, self._place = [], 0
-            self._fill(self._rows, values.get("Index"), [])
-        elif kind == "Cell":
-            self._fill(self._row, values.get("Index"), "")
-            self._row.append("")
-            self._cells += 1
-            if self._cells > _MAX_CELLS:
-                raise ReadError("the workbook is larger than a table of numbers", where=self._path)
-        elif kind == "Data":
-            self._is_number, self._text = values.get("Type") == "Number", []
-
-    def _fill(self, cells: list[Any], index: str | None, empty: object) -> None:
+    def _fill(self, cells: list[Any], element: Element, empty: object) -> None:
         """Add the empty cells or rows before one with an explicit number, from 1."""
-        if index is not None and re.fullmatch(r"\d{1,7}", index):
-            self._cells += max(int(index) - 1 - len(cells), 0)
-            if self._cells > _MAX_CELLS:
-                raise ReadError("the workbook is larger than a table of numbers", where=self._path)
-            cells.extend([empty] * (int(index) - 1 - len(cells)))
+        index = _attribute(element, "Index")
+        gap = int(index) - 1 - len(cells) if index.isdecimal() else 0
+        self._cells += max(gap, 0) + 1
+        if self._cells > _MAX_CELLS:
+            raise ReadError("the workbook is larger than a table of numbers", where=self._path)
+        cells.extend([empty] * gap)
 
-    def _add_text(self, text: str) -> None:
-        if self._text is not None:
-            self._text.append(text)
 
-    def _end(self, tag: str) -> None:
-        kind = tag.rpartition(" ")[2]
-        if kind == "Data" and self._text is not None and self._row:
-            text = "".join(self._text).strip()
-            self._row[-1] = float(text) if self._is_number and text else text
-            self._text = None
-        elif kind == "Row":
-            self._rows.append(self._row)
+def _attribute(element: Element, name: str) -> str:
+    """Return an attribute of any namespace."""
+    return next((v for key, v in element.attrib.items() if key.rpartition("}")[2] == name), "")
+
+
+def _value(data: Element | None) -> Cell:
+    text = "" if data is None else "".join(data.itertext()).strip()
+    number = data is not None and text and _attribute(data, "Type") == "Number"
+    return float(text) if number else text
