@@ -24,7 +24,7 @@ from tribolab.comparison.folder import open_folder
 from tribolab.core.errors import OutputError, ReadError, brief
 from tribolab.core.untyped import Json
 from tribolab.reading.raw.opening import largest_unpacked
-from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
+from tribolab.reading.raw.unpacked import ZIP_DAMAGE
 from tribolab.report import tables
 from tribolab.report.results_folder import Results
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -13,7 +14,6 @@ from tribolab.core.errors import Cure, ReadError, UnitError, shown
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
 from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.source import check_regular
-from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import peek, text_of
 from tribolab.reading.unit_texts import converts
 from tribolab.units.conversion import conversion
@@ -259,7 +259,10 @@ def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
         if delimiter.isspace() and delimiter != "\t":  # columns are aligned
             rows = [re.split(rf"\s{{{len(delimiter)},}}", line.strip()) for line in lines]
         else:
-            rows = [_apart(split_row(line, delimiter)) for line in lines]
+            try:
+                rows = list(map(_apart, csv.reader(lines, delimiter=delimiter)))
+            except csv.Error:
+                continue
         comma = delimiter != "," and any(map(_COMMA.search, lines))
         yield rows, "," if comma and not any(map(_POINT.search, lines)) else "."
 

@@ -1,4 +1,4 @@
-"""Recognition of texts that are units, of recorded or other quantities."""
+"""Recognition of texts that are units, also at the end of keys: "contact_radius_mm"."""
 
 from __future__ import annotations
 
@@ -81,3 +81,35 @@ def converts(text: str, si_unit: str, bare: Counted | None = None) -> bool:
     except TribolabError:
         return False
     return True
+
+
+_LOWER_CASE_UNITS = {"hz": "Hz", "khz": "kHz", "n": "N", "mn": "mN", "kn": "kN"}  # in keys
+_NO_UNIT = frozenset(("percent", "%", "-", "1"))
+
+
+def is_unit_of_key(text: str) -> bool:
+    """Whether a text is a unit of a recorded quantity.
+
+    >>> is_unit_of_key("mm/s"), is_unit_of_key("degC"), is_unit_of_key("raw"), is_unit_of_key("3")
+    (True, True, False, False)
+    """
+    if text.lower() in _NO_UNIT or text == "A" or converts(text, "rad"):
+        return True
+    return measures_something(text) and not converts(text, "1")
+
+
+def without_unit(key: str) -> tuple[str, str]:
+    """Split a key into name and unit suffix.
+
+    >>> without_unit("contact_radius_mm"), without_unit("speed_mm_s"), without_unit("stroke")
+    (('contact_radius', 'mm'), ('speed', 'mm/s'), ('stroke', ''))
+    >>> without_unit("sample_rate_hz")
+    ('sample_rate', 'Hz')
+    """
+    words = key.split("_")
+    for count, mark in ((2, "/"), (1, "")):
+        unit = mark.join(words[-count:])
+        unit = _LOWER_CASE_UNITS.get(unit, unit)
+        if len(words) > count and is_unit_of_key(unit):
+            return "_".join(words[:-count]), unit
+    return key, ""

@@ -37,11 +37,13 @@ from tribolab.reading.unknown.derivations.stated_lines import (
 )
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason, Understood, other_units
-from tribolab.reading.unknown.proposal.answers import column_of, corrected, fits
-from tribolab.reading.unknown.proposal.calibration_factor import (
+from tribolab.reading.unknown.proposal.answers import (
     ANGLE,
     TORQUE,
     Worth,
+    column_of,
+    corrected,
+    fits,
     si_unit_of,
     worth_of,
 )

@@ -75,8 +75,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
 def _read_text(file: File, dialect: Dialect, size: int) -> Content:
     # imported late for a quick start
     from tribolab.reading.dialect.delimited.read_text import Hasher, read_table
-    from tribolab.reading.dialect.delimited.rows_outside import foot_of, rows_outside
-    from tribolab.reading.dialect.delimited.tables import find_tables
+    from tribolab.reading.dialect.delimited.tables import find_tables, foot_of, rows_outside
 
     raw = find_tables(file, dialect)
     whole = raw.memory is None and len(raw.tables) == 1

@@ -22,8 +22,7 @@ from tribolab.reading.raw.hdf5_safety import refuse_outside
 from tribolab.reading.raw.opening import report_damage
 from tribolab.reading.raw.scratch import remove_scratch
 from tribolab.reading.raw.server import Ended, Job
-from tribolab.reading.raw.unpacked import ZIP
-from tribolab.reading.raw.zip_safety import refuse_bomb
+from tribolab.reading.raw.unpacked import ZIP, refuse_bomb
 
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE = 0, 3, 4, 5
 _TEXT_PER_NUMBER = 4  # text cells are longer than numbers

@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.core.errors import ReadError
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
-from tribolab.reading.raw.unit_endings import is_unit, without_unit
+from tribolab.reading.unit_texts import is_unit_of_key, without_unit
 
 _MAX_HEADER = 1 << 16  # bytes of a header
 _SETTING = re.compile(r"^[\s#;*%/!]*(?P<key>[^\W\d][\w .\-/]{0,40}?)\s*[=:]\s*(?P<value>\S.*?)\s*$")
@@ -196,7 +196,7 @@ def _channel(declared: str, inside: str) -> _Channel:
     name, unit = _split_name(plain)
     words = [word.strip() for word in re.split(r"[,;\t]", name)]
     unit = next((pairs[k] for k in _UNIT if k in pairs), unit)
-    if not unit and len(words) > 1 and is_unit(words[1]):
+    if not unit and len(words) > 1 and is_unit_of_key(words[1]):
         unit = words[1]
     scale = _number(next((pairs[k] for k in _SCALE if k in pairs), ""), 1.0)
     bias = _number(next((pairs[k] for k in _BIAS if k in pairs), ""), 0.0)

@@ -17,7 +17,7 @@ from tribolab.core.errors import ReadError
 from tribolab.core.untyped import Json
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
-from tribolab.reading.raw.unit_endings import is_unit, without_unit
+from tribolab.reading.unit_texts import is_unit_of_key, without_unit
 
 _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
 _MIN_NUMBERS = 3  # smallest length of a column
@@ -244,7 +244,7 @@ def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tupl
         return
     own = {k: v for k, v in part.items() if k in names and isinstance(v, str)}
     names_units = len(own) > 1 or key.lower() in keys_of("unit")
-    if names_units and all(is_unit(unit) for unit in own.values() if unit):
+    if names_units and all(is_unit_of_key(unit) for unit in own.values() if unit):
         yield from own.items()
     for name, inner in part.items():
         yield from _units(inner, names, name, depth + 1)

@@ -11,7 +11,7 @@ from tribolab.core.errors import ReadError, shown
 from tribolab.reading.raw.containers.groups import plain, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.opening import isolated
-from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
+from tribolab.reading.raw.unpacked import ZIP_DAMAGE
 
 _NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys)$", re.IGNORECASE)
 

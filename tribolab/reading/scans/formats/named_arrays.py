@@ -12,8 +12,7 @@ from tribolab.core.untyped import Json
 from tribolab.reading.raw.containers.groups import plain
 from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.opening import isolated
-from tribolab.reading.raw.unpacked import ZIP, has_arrays
-from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
+from tribolab.reading.raw.unpacked import ZIP, ZIP_DAMAGE, has_arrays
 
 NPY = b"\x93NUMPY"
 _HDF5 = b"\x89HDF\r\n\x1a\n"

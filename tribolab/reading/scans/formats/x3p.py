@@ -20,8 +20,8 @@ import xarray as xr
 from tribolab.core.errors import ReadError, brief, shown
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.opening import isolated
+from tribolab.reading.raw.unpacked import ZIP_DAMAGE
 from tribolab.reading.raw.xml_safety import parsed
-from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 from tribolab.reading.scans.grid import even, gridded
 
 _MAIN = "main.xml"
