@@ -77,7 +77,7 @@ def test_help_needs_none_of_the_heavy_libraries():
     code = (
         "import sys\nfrom tribolab import cli\n"
         "try:\n    cli.app(['--help'])\nexcept SystemExit:\n    pass\n"
-        "heavy = {'numpy', 'pandas', 'xarray', 'pint', 'pydantic', 'matplotlib', 'distributed'}\n"
+        "heavy = {'numpy', 'pandas', 'scipy', 'xarray', 'pint', 'pydantic', 'matplotlib', 'dask'}\n"
         "sys.stderr.write(str(sorted(heavy & set(sys.modules))))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

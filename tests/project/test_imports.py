@@ -10,16 +10,6 @@ import tribolab
 from tribolab.core.moved import MOVED
 
 
-def test_import_is_lazy():
-    code = (
-        "import sys, tribolab; "
-        "heavy = {'numpy','pandas','xarray','scipy','matplotlib','pint','pydantic','dask'}; "
-        "print(sorted(heavy & set(sys.modules)))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
 def test_every_public_name_resolves():
     for name in tribolab.__all__:
         face = getattr(tribolab, name)

@@ -52,7 +52,7 @@ REAL = {
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=100, suppress_health_check=list(HealthCheck))
+@settings(deadline=None, max_examples=40, suppress_health_check=list(HealthCheck))
 @given(st.sampled_from(sorted(REAL)), st.integers(0, 2**32 - 1))
 def test_a_damaged_file_is_a_dataset_or_our_error(shared_data, tmp_path_factory, name, seed):
     content, _ = mutate((shared_data / name).read_bytes(), np.random.default_rng(seed))

@@ -1,5 +1,7 @@
 """Whatever other labs write: what is read at once is right, and the rest is asked about."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from strange_files import strange_file
@@ -10,13 +12,27 @@ from tribolab.reading.unknown.proposal.questions import GuessedError
 SEEDS = range(30)
 
 
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    """What was drawn with a seed, and its run, or what is asked about it; each is read once."""
+    folder = tmp_path_factory.mktemp("drawn")
+
+    @cache
+    def read(seed):
+        made = strange_file(folder, seed)
+        try:
+            return made, tl.read(made.path)
+        except GuessedError as asked:
+            return made, asked
+
+    return read
+
+
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_file_drawn_by_lot_is_read_rightly_or_asked_about(seed, tmp_path):
-    made = strange_file(tmp_path, seed)
-    try:
-        run = tl.read(made.path)
-    except GuessedError as asked:
-        assert asked.asked or asked.lacks
+def test_a_file_drawn_by_lot_is_read_rightly_or_asked_about(seed, drawn):
+    made, run = drawn(seed)
+    if isinstance(run, GuessedError):
+        assert run.asked or run.lacks
         return
     segments = tl.find_segments(run)
     found = tl.friction_coefficient(run, segments)
@@ -34,11 +50,6 @@ def test_a_file_drawn_by_lot_is_read_rightly_or_asked_about(seed, tmp_path):
     np.testing.assert_allclose(speeds, ends, rtol=0.01)
 
 
-def test_few_of_them_have_to_be_asked_about(tmp_path):
-    asked = 0
-    for seed in SEEDS:
-        try:
-            tl.read(strange_file(tmp_path, seed).path)
-        except GuessedError:
-            asked += 1
+def test_few_of_them_have_to_be_asked_about(drawn):
+    asked = sum(isinstance(drawn(seed)[1], GuessedError) for seed in SEEDS)
     assert asked <= 0.1 * len(SEEDS)
