@@ -19,14 +19,12 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
-    help=(
-        "Friction experiments on soft, rough contacts: raw files in, friction coefficients with "
-        "honest error bars and a report out.\n\n"
-        "New here? `tribolab demo` simulates a campaign, analyses it and shows where to look.\n\n"
-        "Exit codes: 0 fine; 1 a finding at or above the campaign's fail_on; 2 wrong use or a "
-        "mistake in the campaign or review file; 3 an input that cannot be read, a check that "
-        "crashed, a decision that finds nothing to decide on, or nothing found."
-    ),
+    help="Friction experiments on soft, rough contacts: raw files in, friction coefficients with "
+    "honest error bars and a report out.\n\n"
+    "New here? `tribolab demo` simulates a campaign, analyses it and shows where to look.\n\n"
+    "Exit codes: 0 success; 1 a finding at or above the campaign's fail_on; 2 usage error, or "
+    "a mistake in the campaign or review file; 3 an input cannot be read, a check crashed, a "
+    "decision applies to no run or segment, or nothing was found.",
 )
 
 
@@ -50,7 +48,7 @@ def _options(
 
 lab = typer.Typer(
     no_args_is_help=True,
-    help="How well coefficients repeat, how instruments change over months, how much to measure.",
+    help="Repeatability, control charts of an instrument, and planning of measurements.",
 )
 _LAB = (repeatability, history, plan)
 _DAILY = (demo, new, run, check, info, compare, figures, pack, verify)

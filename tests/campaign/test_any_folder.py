@@ -65,7 +65,7 @@ def test_a_folder_of_raw_files_is_analysed_and_its_repeats_are_one_curve(folder,
     }
     # the shell's *.* names the campaign file, too
     again = command("run", *sorted(path.name for path in folder.iterdir()))
-    assert again.exit_code == 0 and "unchanged since the last time" in again.output
+    assert again.exit_code == 0 and "unchanged since the last analysis" in again.output
     # a repeat that was added is taken
     write_strokes(folder / "silicone_water_5N_3.csv", seed=3)
     assert len(load_and_plan(folder / "campaign.toml")[1]) == 3

@@ -179,7 +179,7 @@ def test_a_failed_scan_gives_exit_code_1_and_stands_in_every_result(tmp_path, sc
     campaign.write_text(text, "utf-8")
     done = CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1"])
     assert done.exit_code == 1
-    assert "checks failed: scans of Sb-R" in done.output
+    assert "check failed: scans of Sb-R" in done.output
     results = campaign.parent / "results"
     table = pd.read_csv(results / "tables" / "checks.csv")
     failed = table[table.status == "fail"]

@@ -275,4 +275,4 @@ def test_a_folder_without_results_is_told(tmp_path):
     done = CliRunner().invoke(cli.app, ["compare", str(tmp_path), str(tmp_path)])
     assert done.exit_code == 3 and "name the folder that 'tribolab run' wrote" in done.stderr
     done = CliRunner().invoke(cli.app, ["compare", str(tmp_path)])
-    assert done.exit_code == 2 and "name another, or say --by" in done.stderr
+    assert done.exit_code == 2 and "name a second one, or use --by" in done.stderr

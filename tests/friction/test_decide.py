@@ -195,7 +195,7 @@ def test_new_bounds_that_cannot_be_are_refused(run, segments, low, high, said):
         ({"new_start": "2 s"}, "only 'bounds' has new bounds"),
         ({"action": "bounds", "start": 1.0, "stop": 2.0}, "a new beginning or end"),
         ({"date": "20.11.2026"}, "year, month and day"),
-        ({"author": " "}, "wants its author"),
+        ({"author": " "}, "must state its author"),
         ({"start": float("nan"), "stop": 2.0}, "is no time"),
     ],
 )

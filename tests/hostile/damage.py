@@ -67,7 +67,7 @@ def wrong(campaign: Path, name: str, tables: dict[str, bytes]) -> str:
     if "verify --repair" in said:  # the marker is lost beyond use
         answer("verify", str(results), "--repair")
         code, said = answer(*run)
-    elif said.count("not as tribolab wrote them") != 1 or name not in said:
+    elif said.count("changed since tribolab wrote them") != 1 or name not in said:
         return f"run does not name it once: {said[:200]}"
     if code not in (0, 1):
         return f"exit code {code}: {said[:200]}"

@@ -79,7 +79,12 @@ def _(folder: Path) -> Command:
     return run(file, "-o", str(folder / "thesis"))
 
 
-@case("loss 3: an input in the results", codes=(USAGE,), says="results must lie apart", large=True)
+@case(
+    ("loss 3: an input in the results"),
+    codes=(USAGE,),
+    says="the results folder would contain",
+    large=True,
+)
 def _(folder: Path) -> Command:
     file = campaign(
         folder,
@@ -254,7 +259,7 @@ for _signal, _files in ((15, 1), (1, 1), (2, 1), (15, 3), (15, 6)):
         f"loss 5: signal {_signal} after {_files} files",
         *(_signal, _files),
         codes=(128 + _signal,),
-        says="results of before are as they were",
+        says="earlier results are unchanged",
         after=_old,
         **LONG,
     )

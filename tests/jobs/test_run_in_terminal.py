@@ -40,7 +40,7 @@ def test_friction_at_each_speed_of_a_few_is_printed(tmp_path):
     assert [row[0] for row in rows] == ["2", "5", "20"]
     np.testing.assert_allclose([float(row[1]) for row in rows], [0.3, 0.25, 0.2], atol=1e-3)
     assert all(float(row[2]) < 0.002 and row[4] == "1" for row in rows)
-    assert any(line.startswith("friction at each speed: ") for line in printed)
+    assert any(line.startswith("tables: ") for line in printed)
 
 
 def write_profile(file):
@@ -61,18 +61,20 @@ def test_raw_files_need_no_campaign_file(tmp_path, monkeypatch):
     files = ["raw/disc 7.csv", "raw/roller.txt"]
     done = CliRunner().invoke(cli.app, ["run", *files])
     assert done.exit_code == 0, done.output
-    assert "campaign.toml is written" in done.output and "Rq ± U95 (" in done.output
+    assert "campaign.toml was written" in done.output and "Rq ± U95 (" in done.output
     assert any(line.split()[:1] == ["20"] and "0.200" in line for line in done.output.splitlines())
     said = tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8"))
     assert said["campaign"]["raw"] == "raw" and said["run"] == [{"files": ["disc 7.csv"]}]
     assert said["surface"] == [{"name": "roller", "scans": "roller.txt"}]
     again = CliRunner().invoke(cli.app, ["run", *files])
-    assert "is written" not in again.output and "1 unchanged since the last time" in again.output
+    assert (
+        "was written"
+    ) not in again.output and "1 unchanged since the last analysis" in again.output
     assert {path: path.read_bytes() for path in (tmp_path / "raw").iterdir()} == before
     # what else is said of a file that the campaign file names is not passed over
     other = CliRunner().invoke(cli.app, ["run", files[0]])
     assert other.exit_code == 2, other.output
-    assert "stands here already" in other.output and "tribolab run campaign.toml" in other.output
+    assert "already exists" in other.output and "tribolab run campaign.toml" in other.output
     assert tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8")) == said
     # another file has a campaign file and results of its own
     write_run(tmp_path / "raw" / "disc 8.csv", force)
@@ -90,7 +92,7 @@ def test_a_campaign_file_goes_with_nothing_else(tmp_path, monkeypatch):
     write_run(tmp_path / "disc.csv", np.repeat([6.0, 5.0, 4.0], 300))
     (tmp_path / "own.toml").write_text('[campaign]\nname = "own"\n')
     done = CliRunner().invoke(cli.app, ["run", "disc.csv", "own.toml"])
-    assert done.exit_code == 2 and "own.toml: it is no raw file" in done.output, done.output
+    assert done.exit_code == 2 and "own.toml: it is not a raw file" in done.output, done.output
     done = CliRunner().invoke(cli.app, ["run", "disc.csv", "gone.csv"])
     assert done.exit_code == 2 and "gone.csv: there is no such file" in done.output, done.output
     assert not (tmp_path / "campaign.toml").exists()
@@ -136,7 +138,7 @@ def test_results_lie_where_no_pattern_of_raw_files_reaches(tmp_path, pattern):
     toml = f'[campaign]\nname = "disc"\nraw = "."\n[[run]]\nfiles = "{pattern}"\n'
     (tmp_path / "campaign.toml").write_text(toml)
     done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml")])
-    assert "apart from the raw files" in done.output
+    assert "same folder as the raw files" in done.output
     assert not (tmp_path / "results").exists()
 
 
@@ -173,18 +175,18 @@ def test_a_file_that_cannot_be_read_leaves_nothing_that_hinders_the_next(tmp_pat
     (tmp_path / "odd.txt").write_text("pitch = 0.5 um\n" + "1.5\n2.5\n" * 30)
     write_run(tmp_path / "raw" / "disc.csv", np.repeat([6.0, 5.0, 4.0], 300))
     refused = CliRunner().invoke(cli.app, ["run", "odd.txt"])
-    assert refused.exit_code == 3 and "is written" not in refused.output
+    assert refused.exit_code == 3 and "was written" not in refused.output
     assert "it is the height in um" in refused.output
     assert "tribolab info odd.txt --write" in refused.output and "[[surface]]" not in refused.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["odd.txt", "raw"]
     done = CliRunner().invoke(cli.app, ["run", "raw/disc.csv"])
-    assert done.exit_code == 0 and "campaign.toml is written" in done.output
+    assert done.exit_code == 0 and "campaign.toml was written" in done.output
     # results that stand there already are another's: they stay, and so does what is said of them
     (tmp_path / "campaign.toml").unlink()
     again = CliRunner().invoke(cli.app, ["run", "odd.txt"])
     assert again.exit_code == 3 and (tmp_path / "results" / "report.html").is_file()
     other = CliRunner().invoke(cli.app, ["run", "raw/disc.csv"])
-    assert other.exit_code == 0 and "campaign_disc.toml is written" in other.output
+    assert other.exit_code == 0 and "campaign_disc.toml was written" in other.output
 
 
 def test_of_strokes_it_is_said_which_part_counts(tmp_path, monkeypatch):

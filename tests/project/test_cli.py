@@ -115,7 +115,7 @@ def test_a_second_run_leaves_everything_as_it_is(campaign):
     before = fingerprint(campaign.parent)
     done = told("run", campaign.parent, "--jobs", 1)
     assert done.returncode == 0
-    assert "2 unchanged since the last time" in done.stdout
+    assert "2 unchanged since the last analysis" in done.stdout
     assert fingerprint(campaign.parent) == before
 
 
@@ -124,7 +124,7 @@ def test_another_title_makes_another_report_of_the_same_data(campaign):
     text = campaign.read_text(encoding="utf-8")
     campaign.write_text(text.replace('name = "PMMA', 'name = "Plexiglas', 1), encoding="utf-8")
     done = told("run", campaign, "--jobs", 1)
-    assert "2 unchanged since the last time" in done.stdout
+    assert "2 unchanged since the last analysis" in done.stdout
     assert "Plexiglas" in (campaign.parent / "results/report.html").read_text(encoding="utf-8")
     assert sorted(path.name for path in campaign.parent.iterdir()) == [
         *("campaign.toml", "raw", "results", "truth")
@@ -150,7 +150,7 @@ def test_a_bad_file_gives_exit_code_3_and_results_of_the_others(campaign, tmp_pa
         (["rum"], 2, "No such command"),
         (["run", "{campaign}", "--jobs", "0"], 2, "--jobs"),
         (["run", "{campaign}", "--output", "{folder}"], 2, "--output"),
-        (["run", "{campaign}", "--output", "{folder}/raw/x"], 2, "apart from the raw files"),
+        (["run", "{campaign}", "--output", "{folder}/raw/x"], 2, "same folder as the raw files"),
         (["simulate", "{folder}"], 2, "nothing is overwritten"),
         (["info", "none.csv"], 3, "none.csv"),
         (["info", "{campaign}"], 3, "instrument"),
@@ -305,7 +305,7 @@ def test_ctrl_c_leaves_the_old_results_and_nothing_else(campaign):
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it too
         said = process.stderr.read()
     assert process.returncode == 130
-    assert said == "tribolab: interrupted; results of before are as they were\n"
+    assert said == "tribolab: interrupted; earlier results are unchanged\n"
     assert fingerprint(results) == before
     assert list(campaign.parent.glob(".results.tribolab-*")) == []
 

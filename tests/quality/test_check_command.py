@@ -209,7 +209,7 @@ def test_of_a_map_without_units_the_terminal_says_how_to_describe_it(tmp_path, c
     file = headless_map(tmp_path / "map.txt")
     done = CliRunner().invoke(cli.app, [command, file])
     assert done.exit_code == 3
-    assert "taken for a profile or map, the file states no units (xyz); " in done.stderr
+    assert "treated as a profile or map: the file states no units (xyz); " in done.stderr
     assert f"'tribolab info {file} --write my.toml' drafts a description of it" in done.stderr
     assert not re.search(r"\w=|\w\(\)", done.stderr)
     assert CliRunner().invoke(cli.app, [command, file, "-i", "nanovea_map"]).exit_code == 0

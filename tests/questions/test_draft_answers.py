@@ -254,7 +254,7 @@ def test_questions_that_end_early_write_nothing(tmp_path, monkeypatch):
     file = tmp_path / "x.txt"
     file.write_text("Time [s],Fx [N],Fy [N]\n" + "".join(f"{i},1,5\n" for i in range(50)))
     done = describe(file.name, "--ask", typed="")
-    assert done.exit_code == 130 and "nothing is written" in done.output
+    assert done.exit_code == 130 and "nothing was written" in done.output
     assert not (tmp_path / "x.toml").exists()
 
 

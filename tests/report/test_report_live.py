@@ -30,7 +30,7 @@ PANEL = (
     "const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height] })()"
 )
 SYSTEMS = ["Sb-R, glycerol", "Sb-S, dry", "Sb-S, glycerol"]
-HALF = "half of it"  # the line to read it at
+HALF = "half the maximum"  # the line to read it at
 
 
 @pytest.fixture(scope="module")
@@ -145,18 +145,19 @@ def test_what_the_address_asks_for_and_no_run_has_is_said_and_hides_nothing(brow
     said = "document.querySelector('.asked').textContent"
     every = ["broken", "sb-s_1", "sb-r_1", "sb-s_long"]
     asked = [
-        ("#load=92N", "no run at 92 N (shown is 31 N)", every),
-        ("#surface=Sb-X", "no surface “Sb-X” (all are shown; there are Sb-R and Sb-S)", every),
-        ("#medium=oil", "no medium “oil” (all are shown; there are glycerol and dry)", every),
-        ("#hide=sb-r_7", "no run “sb-r_7”, so nothing of that name is hidden", every),
+        ("#load=92N", "no run at 92 N (shown: 31 N)", every),
+        ("#surface=Sb-X", "no surface “Sb-X” (all are shown; available: Sb-R and Sb-S)", every),
+        ("#medium=oil", "no medium “oil” (all are shown; available: glycerol and dry)", every),
+        ("#hide=sb-r_7", "no run “sb-r_7” to hide", every),
         ("#mark=sb-r_7", "nothing named “sb-r_7” to highlight", every),
-        ("#surface=sb-s&run-99", "no place “run-99” on this page", ["sb-s_1", "sb-s_long"]),
+        ("#surface=sb-s&run-99", "no section “run-99”", ["sb-s_1", "sb-s_long"]),
         ("#load=31N&medium=dry", "", ["sb-s_1"]),
     ]
     with browser.page(f"{alone.as_uri()}#medium=dry") as page:
         for address, words, left in asked:
             page.run(f"location.hash = {json.dumps(address)}")
-            page.wait(f"{said} === {json.dumps(words and f'Asked for, but not here: {words}.')}")
+            shown = words and f"The link refers to something that is not on this page: {words}."
+            page.wait(f"{said} === {json.dumps(shown)}")
             assert rows(page) == left, address
         assert page.run("document.querySelector('.asked').hidden")
 

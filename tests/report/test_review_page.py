@@ -157,7 +157,7 @@ def test_a_campaign_is_reviewed_by_keyboard_alone(browser, original, tmp_path):
         page.type("B. Reader")
         page.key("Enter", "\r")  # no reason: that is asked for, and nothing is decided
         page.wait("document.activeElement.name === 'reason'")
-        assert "wants its reason" in page.run(f"document.querySelector('{here}').textContent")
+        assert "State the reason" in page.run(f"document.querySelector('{here}').textContent")
         said_why(page, here, "the logger's buffer")
         page.key("s", "s")
         page.key("n", "n")
@@ -223,7 +223,7 @@ def test_where_nothing_can_be_kept_the_page_says_so_and_asks_before_it_closes(br
         page.type("B. Reader")
         page.run(f"document.querySelector('{here} [name=reason]').focus()")
         said_why(page, here, "wrong sample")
-        assert "lost when the page is closed" in page.run(BAR)
+        assert "lost when you close the page" in page.run(BAR)
         assert page.run(asks)
         assert page.run("document.documentElement.scrollWidth") == 400
         page.key("l", "l")

@@ -323,7 +323,7 @@ def test_the_form_that_was_taken_off_is_named_where_it_matters(tmp_path):
         for line in file_lines(written(tmp_path, f"X [mm];Z [um]\n{rows}\n"))
         if line.startswith("  Pq")
     ]
-    assert "circle of R = 0.2 m taken off" in told and "with the tilt alone taken off" in told
+    assert "circle of R = 0.2 m removed" in told and "with only the tilt removed:" in told
 
 
 BARE = "\n".join(f"{1000 * z:.1f}" for z in Z)

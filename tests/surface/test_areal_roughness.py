@@ -51,5 +51,5 @@ def test_info_of_a_map_tells_both_and_what_the_tilt_alone_leaves(tmp_path):
         (said,) = (line for line in file_lines(path) if line.startswith("  Sq"))
         of_all = areal_roughness(remove_form(mapped(height), "polynomial"))
         assert f"{1e6 * float(of_all.Sq):.3g} um, Sa {1e6 * float(of_all.Sa):.3g} um" in said
-        assert "polynomial of degree 2 taken off" in said and "ISO 25178" in said
-        assert ("with the tilt alone taken off Sq" in said) == told
+        assert "polynomial of degree 2 removed" in said and "ISO 25178" in said
+        assert ("with only the tilt removed: Sq" in said) == told

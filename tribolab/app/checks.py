@@ -133,7 +133,7 @@ def _files_below(path: Path) -> Iterator[tuple[Sequence[Path], str | None]]:
         yield scans_of(campaign, surface), named
     if own_python(campaign):
         raise ConfigError(
-            f"{path}: it names readers in Python, which are not run for a check",
+            f"{path}: the campaign uses readers in Python, which are not run here",
             cure="check the raw files themselves: tribolab check FILES -i READER.py",
         )
 

@@ -98,9 +98,9 @@ def campaign_file(
     except FileExistsError:
         if not _has_text(file, text):
             raise ConfigError(
-                f"{file} stands here already, and says something else of these files",
-                cure=f"run it, if it was completed: tribolab run {file}; delete it, if it is of an "
-                "earlier `tribolab run` of raw files; or go to another folder",
+                f"{file} already exists, with other settings for these files",
+                cure=f"to use it: tribolab run {file}. If an earlier `tribolab run` of raw files "
+                "wrote it, delete it; or work in another folder",
             ) from None
         return file, False
     except OSError as error:
@@ -129,7 +129,7 @@ def _raw_files(paths: Sequence[Path], folder: Path) -> tuple[list[Path], Path, P
         return [], folder, own[0]
     for path in left:
         if not path.is_file() or path in ours:
-            what = "there is no such file" if not path.exists() else "it is no raw file"
+            what = "there is no such file" if not path.exists() else "it is not a raw file"
             raise ConfigError(
                 f"{path}: {what}", cure="name one campaign file or folder, or raw files alone"
             )
@@ -245,7 +245,7 @@ def campaign_text(
     if kinds.moduli and not (kinds.runs or kinds.scans):
         read_modulus_table(kinds.moduli[0])  # raises if it is a sweep at one frequency
         raise ConfigError(
-            f"{kinds.moduli[0]}: it holds a modulus over frequency, no run and no scan",
+            f"{kinds.moduli[0]}: it contains a modulus over frequency, not a run or scan",
             cure=f'name it as modulus_file = "{kinds.moduli[0].name}" in [contact] of a campaign '
             f"file; `tribolab info {kinds.moduli[0].name}` shows how it is read",
         )

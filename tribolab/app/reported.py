@@ -20,12 +20,12 @@ InstrumentOption = Annotated[
     typer.Option(
         "--instrument",
         "-i",
-        help="Name of an instrument, or the .toml or .py file that describes or reads it.",
-        show_default="the files tell",
+        help="Name of an instrument, or the .toml or .py file that reads its files.",
+        show_default="recognised from the files",
     ),
 ]
 
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bars.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Do not show progress bars.")]
 Jobs = Annotated[
     int | None,
     typer.Option(
@@ -81,11 +81,11 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
         fail(error.message_for(audience), UNREADABLE, debug)
     except KeyboardInterrupt as stop:
         code = stop.code if isinstance(stop, Terminated) else _INTERRUPTED
-        fail("interrupted; results of before are as they were", code, debug)
+        fail("interrupted; earlier results are unchanged", code, debug)
     except (typer.Exit, BrokenPipeError):
         raise
     except typer.Abort:
-        fail("stopped at a question without an answer: nothing is written", _INTERRUPTED, debug)
+        fail("stopped at an unanswered question; nothing was written", _INTERRUPTED, debug)
     except Exception as error:  # a bug: one line, with a traceback on request
         # imported late for a quick start
         from tribolab.core.wording import explain

@@ -188,13 +188,13 @@ def _refuse_python_readers(campaign: Campaign) -> None:
     """Raise if the campaign names Python readers: a foreign campaign file must not run programs."""
     for name in own_python(campaign):
         raise ConfigError(
-            f"instrument = '{shown(name)}' is a program of the campaign's own, which runs only if "
-            "you trust it",
+            f"instrument = '{shown(name)}' is a Python program that belongs to the campaign; it "
+            "runs only if you trust it",
             where=campaign.file,
             cure=Cure(
-                notebook="look into it, then say trust=True",
-                terminal="look into it, then say --trust",
-                campaign="look into it, then say --trust",
+                notebook="read it, then use trust=True",
+                terminal="read it, then use --trust",
+                campaign="read it, then use --trust",
             ),
         )
 
@@ -204,13 +204,13 @@ def _refuse_outside_folder(campaign: Campaign, place: Path) -> None:
     home = campaign.file.resolve().parent
     if not place.is_relative_to(home):
         raise ConfigError(
-            f"campaign.output = '{shown(campaign.campaign.output)}' writes results to {place}, "
-            f"outside of the campaign's folder {home}",
+            f"campaign.output = '{shown(campaign.campaign.output)}' would write results to "
+            f"{place}, outside the campaign's folder {home}",
             where=campaign.file,
             cure=Cure(
-                notebook="name a folder in it, or say output= or outside=True",
-                terminal="name a folder in it, or say --output or --i-know",
-                campaign="name a folder in it, or say --output or --i-know",
+                notebook="name a folder inside it, or use output= or outside=True",
+                terminal="name a folder inside it, or use --output or --i-know",
+                campaign="name a folder inside it, or use --output or --i-know",
             ),
         )
 
@@ -220,12 +220,12 @@ def _refuse_input_folder(campaign: Campaign, place: Path) -> None:
     raw = campaign.raw.resolve()
     if place.is_relative_to(raw) and _matches_results(campaign, raw, place):
         raise ConfigError(
-            f"{place}: results must lie apart from the raw files; choose another folder with "
-            "--output"
+            f"{place}: results cannot be in the same folder as the raw files; choose another "
+            "folder with --output"
         )
     for file, what in [(raw, "the raw files"), *inputs_of(campaign)]:
         if file.resolve().is_relative_to(place):
             raise ConfigError(
-                f"{place}: results must lie apart from what they are made from, and {what} "
-                f"({file.name}) would lie in them; choose another folder with --output, or move it"
+                f"{place}: the results folder would contain {what} ({file.name}), from which the "
+                "results are made; choose another folder with --output, or move it"
             )

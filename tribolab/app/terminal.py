@@ -117,7 +117,7 @@ def _largest_error(points: Sequence[Row], with_zero: bool = True) -> str:
     source = "within or between runs"
     if all(several) or not any(several):
         source = "between runs" if several[0] else "within the run"
-    source = source if with_zero else "without zero"
+    source = source if with_zero else "zero unknown"
     return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} {source}"
 
 
@@ -147,12 +147,16 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     reused = sum(run.reused for run in done)
     line = f"{len(done)} of {Count(len(outcome.runs)):run|runs}"
     if empty := sum(not run.segments for run in done):
-        line += f" ({empty} without a segment)"
+        line += f" ({empty} without a segment of constant speed)"
     line += f", {Count(outcome.segments):segment|segments}"
     if reused:
-        line += f"; {reused} unchanged since the last time"
+        line += f"; {reused} unchanged since the last analysis"
     lines = [line] if outcome.campaign.run else []
-    for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
+    for quality, what in (
+        ("error", ("check crashed")),
+        ("fail", "check failed"),
+        ("suspect", "suspect"),
+    ):
         runs = [run for run in outcome.runs if run.quality == quality]
         # read only the records that are named
         names = _alike((run.name, _reasons_of_run(run, outcome)) for run in runs[:_HANDFUL])
@@ -160,10 +164,10 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         for surface in outcome.surfaces:
             if quality in surface.objections:
                 names.append(f"scans of {surface.name}{_reasons(surface.checks, quality)}")
-        lines += [f"checks {what}: {name}" for name in names[:_HANDFUL]]
+        lines += [f"{what}: {name}" for name in names[:_HANDFUL]]
         if len(names) > _HANDFUL:
             file = from_here(outcome.folder / "tables" / "checks.csv")
-            lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
+            lines.append(f"{what}: {len(names) - _HANDFUL} more, see {file}")
     contradictions = outcome.campaign.contradicting_viscosities()
     lines += [f"medium {name}: {text}" for name, text in contradictions.items()]
     lines += _run_notices(done, outcome)
@@ -190,7 +194,7 @@ def where_to_look(outcome: Outcome) -> list[str]:
     lines = []
     if any(curve.done for curve in outcome.curves):
         file = from_here(outcome.folder / "tables" / "stribeck.csv")
-        lines.append(f"friction at each speed: {file}; of each segment: friction.csv next to it")
+        lines.append(f"tables: {file} (friction at each speed), friction.csv (each segment)")
     return [*lines, f"report: {from_here(outcome.folder / 'report.html')}"]
 
 
@@ -314,8 +318,8 @@ def outside_lines(campaign: Campaign) -> list[str]:
         return []
     return [
         f"{campaign.file.name} reads {Count(len(files)):file|files} outside of its own folder and "
-        f"that of campaign.raw: {_handful(list(map(as_text, files)))}; what they hold is in the "
-        "results. Copy what belongs to the campaign into its folder; --i-know silences this line"
+        f"that of campaign.raw: {_handful(list(map(as_text, files)))}; the results contain their "
+        "data. Copy them into the campaign's folder, or use --i-know to hide this message"
     ]
 
 
@@ -324,12 +328,12 @@ def foreign_lines(outcome: Outcome) -> list[str]:
     lines = []
     if outcome.damaged:
         lines.append(
-            f"not as tribolab wrote them, and computed again: {_handful(outcome.damaged)}; what "
-            "was changed is kept as *.changed-*"
+            f"changed since tribolab wrote them, so computed again: {_handful(outcome.damaged)}; "
+            "the changed versions are kept as *.changed-*"
         )
     if outcome.foreign:
         foreign = _handful(outcome.foreign)
-        lines.append(f"not written by tribolab and left where they are: {foreign}")
+        lines.append(f"other files in the results folder, kept: {foreign}")
     return lines
 
 

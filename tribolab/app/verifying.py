@@ -31,12 +31,12 @@ def problems(results: Path) -> list[str]:
     if results.is_file():
         return problems_of(results)
     if not results.is_dir():
-        raise ReadError(f"{results}: there is no such results folder or packed file")
+        raise ReadError(f"{results}: no such results folder or packed file")
     return Ledger.read(results).problems()
 
 
 def mend(results: Path) -> None:
-    """Write the lost marker of a results folder again.
+    """Restore a lost .tribolab-results file.
 
     Raises
     ------
@@ -44,10 +44,10 @@ def mend(results: Path) -> None:
         If it is not a results folder, or the marker is not lost.
     """
     if not (results / CATALOGUE).is_file():
-        raise ConfigError(f"{results}: no results folder: it has no {CATALOGUE}")
+        raise ConfigError(f"{results}: not a results folder: it has no {CATALOGUE}")
     if Ledger.read(results).files:
         raise ConfigError(
-            f"{results}: the marker is not lost; 'tribolab run' computes what is damaged again"
+            f"{results}: .tribolab-results exists; 'tribolab run' computes damaged results again"
         )
     try:
         repair(results)
@@ -85,8 +85,8 @@ def recomputed(
     version = folder.report["versions"].get("tribolab", "")
     if version != __version__:
         raise ConfigError(
-            f"{results}: made by tribolab {version}, this is {__version__}; the numbers of another "
-            "version may differ: compute them again with that one"
+            f"{results}: made by tribolab {version}, this is {__version__}; versions may differ "
+            "in their numbers, so recompute with the same version"
         )
     known = campaign_of(folder.path, folder.report, campaign)
     with tempfile.TemporaryDirectory() as temporary:
@@ -119,7 +119,7 @@ def _differing(there: Path, made: Path, name: str) -> list[str]:
             at = "" if there.read_bytes() == made.read_bytes() else "its numbers"
     except (OSError, ValueError, LookupError, ReadError) as error:
         return [f"{name}: cannot be read ({brief(error)})"]
-    return [f"{name}: not what the raw files give, first at {at}"] if at else []
+    return [f"{name}: differs from the recomputed values, first at {at}"] if at else []
 
 
 def _differing_entries(one: object, other: object, at: str = "") -> Iterator[str]:

@@ -90,8 +90,8 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
         name = runs[odd.repeat]
         side = "above" if odd.deviation > 0 else "below"
         text = (
-            f"friction is {percent(abs(odd.deviation))} {side} that of its "
-            f"{len(runs) - 1} repeats, {usual}. It is still in the mean. Check mounting, zero and "
+            f"friction is {percent(abs(odd.deviation))} {side} that of its {len(runs) - 1} "
+            f"repeats, {usual}. The run is still included in the mean. Check mounting, zero and "
             "specimen; reject the run in review.toml if it is wrong"
         )
         checks[name] = _row("suspect", text, odd.deviation)

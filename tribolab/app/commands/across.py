@@ -19,20 +19,23 @@ def compare(
     by: Annotated[
         str,
         typer.Option(
-            help="Compare two parts of one folder: surface or medium, the first two or those of "
-            "--level; with several folders, what they differ in on purpose."
+            help="Compare by surface or medium: the first two in one folder, or those of --level. "
+            "With several folders: the intended difference between them."
         ),
     ] = "",
     level: Annotated[
         list[str] | None,
-        typer.Option(help="With --by: which; given twice.", show_default=False),
+        typer.Option(
+            help="The two surfaces or media to compare with --by; use it twice.",
+            show_default=False,
+        ),
     ] = None,
     margin: Annotated[
         str,
-        typer.Option(help='Largest difference that does not matter: "5 %" or "0.01".'),
+        typer.Option(help='Largest difference that is unimportant, e.g. "5 %" or "0.01".'),
     ] = "",
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder of the page and its tables.")
+        Path, typer.Option("--output", "-o", help="Output folder for the page and its tables.")
     ] = Path("comparison"),
     debug: Debug = False,
 ) -> None:
@@ -51,7 +54,7 @@ def compare(
         from tribolab.comparison.comparison import compare as compared_with
 
         if len(folders) == 1 and not by:
-            raise ConfigError("one folder is compared with nothing: name another, or say --by")
+            raise ConfigError("there is only one folder: name a second one, or use --by")
         others: list[Path | None] = [*folders[1:]] or [None]
         made = [
             compared_with(
@@ -79,12 +82,13 @@ def repeatability(
     by: Annotated[
         str,
         typer.Option(
-            help="What may make runs differ, parted by commas: mount, day, operator, specimen or "
-            "labels of the campaign file; day:mount for mounts that are new every day."
+            help="Factors that may affect the runs, separated by commas: mount, day, operator, "
+            "specimen or other labels of the campaign file; day:mount if each day has new "
+            "mounts."
         ),
     ] = "mount",
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder of the page and its tables.")
+        Path, typer.Option("--output", "-o", help="Output folder for the page and its tables.")
     ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
@@ -111,12 +115,12 @@ def repeatability(
 def history(
     folders: Annotated[
         list[Path],
-        typer.Argument(help="Results folders, or folders below which they lie, in any order."),
+        typer.Argument(help="Results folders, or folders that contain them, in any order."),
     ],
     rule: Annotated[list[str] | None, leaving("--rule", "choose rules in a notebook")] = None,
     baseline: Annotated[int | None, leaving("--baseline", "choose it in a notebook")] = None,
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
+        Path, typer.Option("--output", "-o", help="Output folder for the page and its table.")
     ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
@@ -149,9 +153,9 @@ def history(
 
 
 def plan(
-    results: Annotated[Path, typer.Argument(help="Results folder of a pilot.")],
+    results: Annotated[Path, typer.Argument(help="Results folder of a pilot study.")],
     standard_error: Annotated[
-        float | None, leaving("--standard-error", "state --half-interval, U95 of the mean")
+        float | None, leaving("--standard-error", "state --half-interval (U95 of the mean)")
     ] = None,
     half_interval: Annotated[
         float | None,
@@ -161,13 +165,17 @@ def plan(
     ] = None,
     assurance: Annotated[
         float,
-        typer.Option(min=0.5, max=0.999, help="Chance to find it that small, of a sure plan."),
+        typer.Option(
+            min=0.5,
+            max=0.999,
+            help="Probability of reaching it with the number of runs called assured.",
+        ),
     ] = 0.8,
     setup_time: Annotated[
-        str, typer.Option(help="What each run costs in addition to sliding.")
+        str, typer.Option(help="Time that each run takes in addition to sliding.")
     ] = "10 min",
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
+        Path, typer.Option("--output", "-o", help="Output folder for the page and its table.")
     ] = Path("lab"),
     debug: Debug = False,
 ) -> None:

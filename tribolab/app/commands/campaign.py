@@ -29,7 +29,7 @@ _FIGURES = "'tribolab figures' draws all figures"
 
 def demo(
     folder: Annotated[
-        Path, typer.Argument(help="Where to put it; made if it is not there.")
+        Path, typer.Argument(help="Output folder; created if it does not exist.")
     ] = Path("tribolab-demo"),
     jobs: Jobs = None,
     quiet: Quiet = False,
@@ -62,7 +62,7 @@ def demo(
 def reproduce(
     output: Annotated[
         Path,
-        typer.Option("--output", "-o", help="Folder of the results; files of yours in it stay."),
+        typer.Option("--output", "-o", help="Output folder; your own files in it are kept."),
     ] = Path("tribolab-paper"),
     jobs: Jobs = None,
     quiet: Quiet = False,
@@ -105,15 +105,15 @@ def run(
         typer.Option(
             "--output",
             "-o",
-            help="Folder of the results; files of yours in it stay.",
-            show_default="as the campaign file says, else results/ next to it",
+            help="Output folder; your own files in it are kept.",
+            show_default="stated in the campaign file, or results/ next to it",
         ),
     ] = None,
     jobs: Jobs = None,
     scheduler: Annotated[
         str | None,
         typer.Option(
-            help="Address of a Dask scheduler to work on, e.g. tcp://10.0.0.5:8786.",
+            help="Address of a Dask scheduler that runs the analysis, e.g. tcp://10.0.0.5:8786.",
             show_default=False,
         ),
     ] = None,
@@ -121,7 +121,7 @@ def run(
         bool,
         typer.Option(
             "--local-if-lost",
-            help="Analyse everything here if the Dask cluster does not answer or is lost.",
+            help="Analyse on this computer if the Dask cluster is unavailable or lost.",
         ),
     ] = False,
     figures: Annotated[str, leaving("--figures", _FIGURES)] = "curves",
@@ -133,18 +133,18 @@ def run(
         bool,
         typer.Option(
             "--i-know",
-            help="Let the campaign file write and read outside of its own folder.",
+            help="Allow the campaign file to read and write outside its own folder.",
         ),
     ] = False,
     trust: Annotated[
         bool,
-        typer.Option("--trust", help="Run the readers in Python that the campaign file names."),
+        typer.Option("--trust", help="Allow the Python readers named in the campaign file to run."),
     ] = False,
     verify: Annotated[
         bool,
         typer.Option(
             "--verify",
-            help="Read every raw file and result to find what changed, not by size and time.",
+            help="Detect changes by the content of raw files and results, not by size and time.",
         ),
     ] = False,
     quiet: Quiet = False,
@@ -217,7 +217,7 @@ def run(
                 say(f"tribolab: {line}", to_stderr=True)
             raise typer.Exit(UNREADABLE)
         if written:
-            say(f"{file} is written. Add what you know: geometry, media, uncertainties")
+            say(f"{file} was written. Add what you know: geometry, media, uncertainties")
         for line in () if i_know or written else terminal.outside_lines(outcome.campaign):
             say(f"tribolab: {line}", to_stderr=True)
         code = show_outcome(outcome, debug)
@@ -236,14 +236,14 @@ def new(
         # imported late for a quick start
         from tribolab.app.new_campaign import write_new_campaign
 
-        say(f"{write_new_campaign(folder)} is written: complete it, then tribolab run {folder}")
+        say(f"{write_new_campaign(folder)} was written: complete it, then tribolab run {folder}")
 
 
 def figures(
     campaign: Annotated[
         Path, typer.Argument(help="The campaign file (TOML), or the folder with campaign.toml.")
     ],
-    pdf: Annotated[bool, typer.Option("--pdf", help="Write them as PDF, too.")] = False,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Also write them as PDF.")] = False,
     jobs: Jobs = None,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -264,8 +264,10 @@ def figures(
 
 
 def simulate(
-    folder: Annotated[Path, typer.Argument(help="Where to; must be new or empty.")],
-    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 0,
+    folder: Annotated[Path, typer.Argument(help="Output folder; must be new or empty.")],
+    seed: Annotated[
+        int, typer.Option(min=0, help="Seed of the random numbers; equal seeds give equal files.")
+    ] = 0,
     repeats: Annotated[int, typer.Option(min=1, help="Runs per surface, medium and load.")] = 2,
     small: Annotated[
         bool, typer.Option("--small", help="Two surfaces, one load, three speeds.")
@@ -303,7 +305,7 @@ def simulate(
                 executor=pool,
                 progress=progress,
             )
-        say(f"{campaign} is written; analyse it with\n  tribolab run {campaign}")
+        say(f"{campaign} was written; analyse it with\n  tribolab run {campaign}")
 
 
 def show_outcome(outcome: Outcome, debug: bool) -> int:

@@ -39,11 +39,16 @@ _MIN_FILES_IN_PARALLEL = 12  # number of files above which other processes are w
 def check(
     files: Annotated[
         list[Path],
-        typer.Argument(help="Runs (the two logs of one are one run), scans, folders, campaigns."),
+        typer.Argument(
+            help="Files of runs (two logs may belong to one run) or scans, folders, or campaign "
+            "files."
+        ),
     ],
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON document to standard output.")
+    ] = False,
     fail_on: Annotated[
-        str, typer.Option(help="Exit with 1 from which status on: suspect, fail or never.")
+        str, typer.Option(help="Lowest status that gives exit code 1: suspect, fail or never.")
     ] = "fail",
     instrument: InstrumentOption = None,
     load: LoadOption = None,
@@ -51,7 +56,7 @@ def check(
     speed: SpeedOption = None,
     rate: RateOption = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show notes, and what passed, too.")
+        bool, typer.Option("--verbose", "-v", help="Also show notes and passed checks.")
     ] = False,
     repeats: Annotated[
         bool | None,
@@ -115,18 +120,18 @@ def info(
     write: Annotated[
         Path | None,
         typer.Option(
-            help="Write a description (TOML) of the unknown instrument that wrote the files.",
+            help="Write a dialect (TOML): a description of the files of an unknown instrument.",
             show_default=False,
         ),
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace the .toml file if there is one.")
+        bool, typer.Option("--force", help="Overwrite an existing .toml file.")
     ] = False,
     ask: Annotated[
         bool | None,
         typer.Option(
             "--ask/--no-ask",
-            help="With --write: ask which column is what; Enter takes the guess.",
+            help="With --write: ask for the meaning of columns; Enter accepts the suggestion.",
             show_default="in a terminal",
         ),
     ] = None,

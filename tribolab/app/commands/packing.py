@@ -20,19 +20,22 @@ def pack(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="The .zip file.", show_default="the campaign's title, next to"
+            "--output",
+            "-o",
+            help="The .zip file.",
+            show_default="the campaign's title, next to the results",
         ),
     ] = None,
     raw: Annotated[
-        bool, typer.Option("--raw", help="Take raw files along, not their checksums only.")
+        bool, typer.Option("--raw", help="Include the raw files, not only their checksums.")
     ] = False,
     campaign: Annotated[
         Path | None,
         typer.Option(help="The campaign file.", show_default="next to the results"),
     ] = None,
-    author: Annotated[str, typer.Option(help="Who deposits.")] = "",
-    publisher: Annotated[str, typer.Option(help="Where it is published.")] = "",
-    licence: Annotated[str, typer.Option(help="Its SPDX name, e.g. CC-BY-4.0.")] = "",
+    author: Annotated[str, typer.Option(help="Name of the author.")] = "",
+    publisher: Annotated[str, typer.Option(help="Address or DOI of the publication.")] = "",
+    licence: Annotated[str, typer.Option(help="SPDX name of the licence, e.g. CC-BY-4.0.")] = "",
     debug: Debug = False,
 ) -> None:
     """Pack results into one file for a repository, which others can read and analyse again.
@@ -48,8 +51,8 @@ def pack(
 
         if results.is_file():
             raise ConfigError(
-                f"{results}: a file, no results folder; 'tribolab verify {results}' checks a "
-                "packed file"
+                f"{results}: this is a file, not a results folder; 'tribolab verify {results}' "
+                "checks a packed file"
             )
         made = packing.pack(
             results,
@@ -62,7 +65,10 @@ def pack(
         )
         say(f"packed and checked: {made}")
         if not licence:
-            say("no licence is stated: others may only ask; say --licence, e.g. CC-BY-4.0")
+            say(
+                "no licence is stated, so others may not reuse the data; state --licence, e.g. "
+                "CC-BY-4.0"
+            )
 
 
 def verify(
@@ -74,7 +80,7 @@ def verify(
         ),
     ] = False,
     repair: Annotated[
-        bool, typer.Option("--repair", help="Write the lost marker of a results folder again.")
+        bool, typer.Option("--repair", help="Restore a lost .tribolab-results file.")
     ] = False,
     campaign: Annotated[
         Path | None,
@@ -82,7 +88,7 @@ def verify(
     ] = None,
     trust: Annotated[
         bool,
-        typer.Option("--trust", help="Run the readers in Python that the campaign file names."),
+        typer.Option("--trust", help="Allow the Python readers named in the campaign file to run."),
     ] = False,
     jobs: Jobs = None,
     quiet: Quiet = False,
@@ -111,7 +117,7 @@ def verify(
         if repair:
             mend(results)
             say(
-                f"{results}: the marker is written again; run 'tribolab run': it computes "
+                f"{results}: .tribolab-results is restored; 'tribolab run' now computes "
                 "everything again and keeps copies of the present tables and page"
             )
             return
@@ -126,5 +132,5 @@ def verify(
         if wrong:
             raise typer.Exit(UNREADABLE)
         verb = "packed" if results.is_file() else "written"
-        same = ", and computed again from the raw files it is the same" if recompute else ""
-        say(f"{results}: as it was {verb}{same}")
+        same = ", and recomputing from the raw files gives the same results" if recompute else ""
+        say(f"{results}: unchanged since it was {verb}{same}")

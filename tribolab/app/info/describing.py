@@ -52,7 +52,9 @@ def describe(
         check_target(target, force=force)
         draft = as_profile(draft)
     if draft.dialect is None:
-        why = draft.answer or "the units of its columns are not stated; answer in a terminal"
+        why = draft.answer or (
+            "the units of its columns are not stated; run this in a terminal to answer questions"
+        )
         fail(f"{files[0]}: no dialect is written: {why}", UNREADABLE, debug=False)
     _write(files, draft, target, force=force)
     print_next(draft, target, console())
@@ -83,7 +85,7 @@ def describe_by_questions(files: Sequence[Path], *, keep: bool) -> Path | None:
     names = (f"{draft.name}{'' if n == 1 else f'_{n}'}.toml" for n in count(1))
     target = next(name for name in names if not Path(name).exists())
     if not keep:
-        target = _prompt("which file shall keep this description? (- for none)", target).strip()
+        target = _prompt("file name for this description? (- to discard it)", target).strip()
         if target == "-":
             return None
     check_target(Path(target))

@@ -101,8 +101,8 @@ def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> 
     share = part.file.stat().st_size / path.stat().st_size
     lines.insert(
         2,
-        f"  the number of rows is estimated, and ranges are of samples: {share:.1%} of the file "
-        "was read (`tribolab check` reads all)",
+        f"  only {share:.1%} of the file was read: the number of rows is an estimate, and ranges "
+        "refer to that part (`tribolab check` reads all)",
     )
     more = [] if drafted else companion_lines(describe_companion(path, instrument, log))
     return lines + (more or missing_lines(facts, log.columns)) + _doubts(log.columns)
@@ -192,7 +192,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
             except ReadError as as_run:
                 if bare:
                     known = str(as_run.what).split("; of its columns")[0]
-                    what = f"{known}; taken for a profile or map, {error.what}"
+                    what = f"{known}; treated as a profile or map: {error.what}"
                     general = error.cure in ("", cures.MEND_UNITS, cures.SIZE)
                     cure = as_run.cure if general else error.cure
                     raise ReadError(what, where=as_run.where, cure=cure) from error
@@ -248,7 +248,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
         f"{' x '.join(str(scan.sizes[axis]) for axis in axes)} points",
     ]
     if len(traces) > 1:
-        lines.append(f"  {len(traces)} traces are in the file, of the first:")
+        lines.append(f"  {len(traces)} traces in the file; data of the first:")
     for axis in axes:
         values = scan[axis].values
         length = float(values[-1] - values[0])
@@ -272,7 +272,7 @@ def _results_lines(path: Path) -> list[str]:
     from tribolab.reading.scans.results import read_tester_results
 
     results = read_tester_results(path)
-    lines = [f"{path}: results of a roughness tester, no profile"]
+    lines = [f"{path}: results of a roughness tester, without a profile"]
     for name, values in results.data_vars.items():
         unit = quantity(str(name)).unit
         lines.append(f"  {name}  {float(values):.6g}{'' if unit == '1' else f' {unit}'}")
@@ -386,14 +386,14 @@ def companion_lines(facts: CompanionFacts) -> list[str]:
         From `tribolab.reading.runs.file_facts.describe_companion`.
     """
     if "missing" in facts:
-        return [f"  companion log: {facts['missing']} is not there"]
+        return [f"  companion log: {facts['missing']} does not exist"]
     if "ways" not in facts:
         return [f"  companion log: refused: {facts['refused']}"] if facts else []
     lines = [f"  companion log: found ({facts['instrument']})"]
     if "refused" in facts:
         lines.append(
-            f"  clock shift: not told by the signals: {facts['refused']}; "
-            "state clock_shift in the [[run]] of a campaign file"
+            f"  clock shift: cannot be determined from the signals ({facts['refused']}); state "
+            "clock_shift in [[run]] of a campaign file"
         )
     else:
         lines.append(
@@ -401,7 +401,7 @@ def companion_lines(facts: CompanionFacts) -> list[str]:
             f"{facts['uncertainty_s']:.2g} s, {facts['source']}"
         )
     return lines + [
-        f"    told by {_WAYS.get(name, name)}: {way}" for name, way in facts["ways"].items()
+        f"    from {_WAYS.get(name, name)}: {way}" for name, way in facts["ways"].items()
     ]
 
 

@@ -48,12 +48,12 @@ def areal_lines(scan: xr.Dataset) -> list[str]:
     tilt_text = ""
     if sq > 0 and abs(level_sq / sq - 1) > _OTHER_FORM:
         tilt_text = (
-            f"; with the tilt alone taken off Sq {level_sq:.3g} um, "
+            f"; with only the tilt removed: Sq {level_sq:.3g} um, "
             f'Sa {1e6 * float(level.Sa.mean()):.3g} um (form = "tilt" in [roughness])'
         )
     return [
-        f"  Sq      {sq:.3g} um, Sa {sa:.3g} um: polynomial of degree 2 taken off, waves of every "
-        f"length, over the whole map (ISO 25178){tilt_text}"
+        f"  Sq      {sq:.3g} um, Sa {sa:.3g} um: polynomial of degree 2 removed, no cut-off, over "
+        f"the whole map (ISO 25178){tilt_text}"
     ]
 
 
@@ -86,7 +86,9 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     by = " by the instrument" if iso.attrs["filtered_by"] == "instrument" else ""
     filtered = f"waves longer than {1e3 * cut:.3g} mm filtered out{by}" if cut else "no cut-off"
     if cut and not by and cut < STANDARD_CUTOFF:
-        filtered += f" (a fifth of the scan, which is short of {5e3 * STANDARD_CUTOFF:.3g} mm)"
+        filtered += (
+            f" (a fifth of the scan, because it is shorter than {5e3 * STANDARD_CUTOFF:.3g} mm)"
+        )
     for name in sizes:
         if (error := f"{name}_sem") in iso:
             value, sem = (1e6 * float(iso[each].mean()) for each in (name, error))
@@ -109,14 +111,14 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     tilt_text = ""
     if abs(level / all_waves - 1) > _OTHER_FORM:
         tilt_text = (
-            f"; with the tilt alone taken off Pq {level:.3g} um, "
+            f"; with only the tilt removed: Pq {level:.3g} um, "
             f'Pa {_mean_deviation(tilted):.3g} um (form = "tilt" in [roughness])'
         )
     return [
-        f"  Rq      {sizes['Rq']}, Ra {sizes['Ra']}: {form} taken off, {filtered}; means over "
+        f"  Rq      {sizes['Rq']}, Ra {sizes['Ra']}: {form} removed, {filtered}; means over "
         f"{lengths}{rows} (ISO 4287)",
-        f"  Pq      {all_waves:.3g} um, Pa {_mean_deviation(flat):.3g} um: {form} taken off, "
-        f"waves of every length{rows}{tilt_text}",
+        f"  Pq      {all_waves:.3g} um, Pa {_mean_deviation(flat):.3g} um: {form} removed, no "
+        f"cut-off{rows}{tilt_text}",
     ]
 
 

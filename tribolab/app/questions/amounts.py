@@ -26,9 +26,11 @@ def set_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
     speed = what_follows(layout, understood._replace(strokes=strokes)).speed
     if speed is None or speed.source != "stroke":
         if not strokes[0] and turns_alone(strokes[1]):
-            raise ReadError(f"turns need the radius of their track: {strokes[1]} at 20 mm radius")
+            raise ReadError(
+                f"a rotation speed needs the radius of the track: {strokes[1]} at 20 mm radius"
+            )
         lacking_one = "frequency, such as 2 Hz" if strokes[0] else "length, such as 8 mm"
-        raise ReadError(f"strokes need a {lacking_one}, too")
+        raise ReadError(f"strokes also need a {lacking_one}")
     return draft
 
 

@@ -57,7 +57,7 @@ _SUM = re.compile(r"^\d+(?:\s*\+\s*\d+)+$")
 _FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
 _LOAD = ("normal_force", "normal_stress")
 _MOTION = ("sliding_velocity", "rotation_speed", "position", ANGLE)
-_SCAN = {"x": "the coordinate along the profile", "height": "the height"}
+_SCAN = {"x": "the position along the profile", "height": "the height"}
 
 
 class Ask(Protocol):
@@ -131,9 +131,9 @@ def _ask_about_scan(draft: Draft, ask: Ask, say: Say) -> Draft:
         return draft
     guess = ", ".join(_unit_guess(column, name) for name, column in doubtful.items())
     places = " and ".join(str(column.place) for column in doubtful.values())
-    question = f"in which units do columns {places} write {' and '.join(doubtful)}?"
+    question = f"in which units are {' and '.join(doubtful)} (columns {places})?"
     if len(doubtful) == 1:
-        question = f"in which unit does column {places} write it?"
+        question = f"in which unit is column {places}?"
     while True:
         units = [unit for unit in re.split(r"[,;\s]+", ask(question, guess)) if unit]
         units = units * len(doubtful) if len(units) == 1 else units
@@ -144,7 +144,7 @@ def _ask_about_scan(draft: Draft, ask: Ask, say: Say) -> Draft:
         except TribolabError as error:
             say(str(error.what))
         except ValueError:
-            say(f"as many units as columns are wanted, e.g. {guess}")
+            say(f"type one unit for each column, e.g. {guess}")
 
 
 def _has_speed_from_settings(draft: Draft) -> bool:
@@ -166,7 +166,7 @@ def _ask_for_motion(draft: Draft, ask: Ask, say: Say) -> Draft:
         return draft
     speed = what_follows(layout, understood).speed
     if speed is not None and speed.guess and speed.source == "stroke":
-        crank = f"does a crank drive it ({_NONE}: its speed is constant both ways)?"
+        crank = f"is it driven by a crank ({_NONE}: constant speed in both directions)?"
         drive = "constant speed" if ask(crank, "yes").strip() == _NONE else "crank"
         understood = understood._replace(drive=drive)
     return _ask_for_lengths(draft, layout, understood, ask, say)
@@ -180,7 +180,7 @@ def _ask_for_lengths(
     lacks = {lack.member for lack in lacking(understood, follows)}
     if follows.zero_in_doubt is not None:
         text = follows.zero_in_doubt.text
-        taken = ask(f"was '{text}' taken off the signal ({_NONE}: it is still in it)?", "yes")
+        taken = ask(f"was '{text}' subtracted from the signal ({_NONE}: not yet)?", "yes")
         understood = understood._replace(zero="in it" if taken.strip() == _NONE else "taken off")
         follows = what_follows(layout, understood)
     guessed = [value for value in follows.values if value.guess]
@@ -208,7 +208,7 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
         return draft
     pitch = ""
     if not understood.pitched:
-        question = "how far do neighbouring heights lie apart, with its unit?"
+        question = "what is the distance between neighbouring points, with its unit?"
         pitch = _ask_amount(question, "pitch", "m", _NONE, ask, say)
     if not (pitch or understood.pitched):
         return draft
@@ -226,11 +226,11 @@ def _height_unit(understood: Understood, pitch: str, ask: Ask, say: Say) -> str:
     if unit is None and pitch:
         unit = likely_height_unit(understood.numbers[:, column.place - 1], positive(pitch, "m", ""))
         if unit:
-            say(f"heights in {unit}: in another unit no instrument measures such a profile")
+            say(f"heights in {unit}: in any other unit the profile would be impossible")
     if unit:
         return unit
     guess = _unit_guess(column, "height")
-    return ask(f"in which unit does column {column.place} write it?", guess).strip()
+    return ask(f"in which unit is column {column.place}?", guess).strip()
 
 
 def _ask_amount(
@@ -263,7 +263,7 @@ def _ask_for(
     lines, value = ("", None) if found or earlier else candidate_amount(draft, amount)
     likely = amount_of(value)
     if lines:
-        question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
+        question += f"; is it in {lines}?" + (f" (yes: {likely})" if likely else "")
     # which column it is can be seen above: only its unit is open
     typed = str(found.place) if found and found.fill_in and not found.guessed else ""
     while True:
@@ -366,7 +366,7 @@ def _ask_unit(
     foreign = (
         bool(stated) and is_unit(stated) and not any(_fits(stated, wanted) for wanted in asked)
     )
-    question = f"in which unit does column {column.place} write it?"
+    question = f"in which unit is column {column.place}?"
     guess = _unit_guess(column, asked[0])
     if foreign:
         question = f"column {column.place} is in {shown(stated)}: how much is 1 {shown(stated)}?"
@@ -377,7 +377,7 @@ def _ask_unit(
     typed = ask(question, guess).strip()
     unit = worth_of(typed, asked, column.file_unit)
     if foreign and not typed[:1].isdigit() and typed[:1] not in "+-.":
-        raise TribolabError(f"say how much of {shown(typed, 20)} 1 {shown(stated)} is")
+        raise TribolabError(f"state how many {shown(typed, 20)} are 1 {shown(stated)}")
     return unit
 
 
@@ -401,7 +401,9 @@ def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
         return 1
     counted = f"{values.min():.4g} to {values.max():.4g}"
     guess = "yes" if column.sign < 0 or values.max() <= 0 else "no"
-    typed = ask(f"column {column.place} goes from {counted}: is pressing negative?", guess)
+    typed = ask(
+        (f"column {column.place} ranges from {counted}: is a pressing force negative?"), guess
+    )
     return -1 if typed.strip().lower().startswith(("y", "j", "o", "s")) else 1
 
 
@@ -411,8 +413,8 @@ def _ask_zero(draft: Draft, column: DraftColumn, unit: Worth, ask: Ask, say: Say
     forces = {*_FRICTION, *_LOAD}
     if unit.scale == 1 or unit.name not in forces or layout is None or understood is None:
         return draft
-    question = f"what does column {column.place} read without contact, in its own numbers? "
-    question += f"(or where it is so: first 5 s; {_NONE}: zero)"
+    question = f"what does column {column.place} show without contact, in its own unit? "
+    question += f"(or when there is no contact: first 5 s; {_NONE}: zero)"
     while True:
         typed = ask(question, _NONE).strip()
         if typed == _NONE:

@@ -52,7 +52,7 @@ def _try_run(file: Path, dialect: Path) -> str:
     if RunAttributes.from_attrs(run.attrs).rows_are == "points":
         text = f"{Count(len(time)):result|results}, each at one speed"
     if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.variables):
-        return f"{text}; no friction coefficient yet: nothing holds the friction"
+        return f"{text}; no friction coefficient yet: no column contains the friction"
     try:
         segments = find_segments(run)
         friction = friction_coefficient(run, segments)
@@ -69,8 +69,8 @@ def _try_run(file: Path, dialect: Path) -> str:
     if turned:
         return (
             f"{text}; friction changes its sign {turned} times, but no column gives the "
-            "direction: it looks like reversing motion, whose mean is no friction coefficient; "
-            'state stroke and frequency under [speed], with source = "stroke"'
+            "direction. This looks like reversing motion, so the mean is not a friction "
+            'coefficient. State stroke and frequency under [speed], with source = "stroke"'
         )
     return f"{text}{_coefficients(friction)}"
 

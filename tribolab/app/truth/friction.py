@@ -82,7 +82,9 @@ def compare_with_truth(
     truth = read_truth(folder)
     for run in outcome.runs:
         if run.name not in truth.segments:
-            raise AnalysisError(f"{run.name}: the truth in {folder} knows nothing of this run")
+            raise AnalysisError(
+                f"{run.name}: {folder} does not contain the true values of this run"
+            )
     names = [run.name for run in outcome.runs]
     files = [outcome.folder / run.data_file if run.done else None for run in outcome.runs]
     each = executor.map if executor else map

@@ -21,23 +21,23 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
     rows = compared.surfaces
     lines = [
         "",
-        f"against the truth: {c.found} of {c.true} segments found, {c.missed} missed, "
-        f"{c.extra} extra; the true friction coefficient lies within 1 standard error in "
-        f"{100 * c.within_1:.0f} %, within 3 in {100 * c.within_3:.1f} % of them",
+        f"compared with the true values: {c.found} of {c.true} segments found, {c.missed} missed, "
+        f"{c.extra} extra; the true friction coefficient is within 1 standard error in "
+        f"{100 * c.within_1:.0f} % of them, within 3 in {100 * c.within_3:.1f} %",
     ]
     if len(rows):
         off = rows.assign(off=100 * rows.relative_difference.abs()).groupby("quantity").off.max()
         words = {"rms_roughness_m": "roughness", "rms_slope": "slope", "contact_area_ratio": "A/A0"}
         text = ", ".join(f"{words[name]} {off[name]:.1f} %" for name in words if name in off)
         lines.append(
-            f"surfaces, from their scans: at most {text} from the truth; "
+            f"surfaces, from their scans: at most {text} off the true values; "
             f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
         )
     fits, lost = compared.shear_stress, _not_described(results)
     if len(fits):
         lines.append(
-            f"shear stresses, fitted with the scanned spectra: at most "
-            f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
+            "shear stresses, fitted with the scanned spectra: at most "
+            f"{100 * fits.relative_difference.abs().max():.1f} % off the true values; "
             f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals{lost}"
         )
     return [

@@ -52,7 +52,7 @@ def uncertainty_budget(budget: UncertaintyBudget, at: int | None = None) -> Figu
     x = Axis("standard uncertainty", "% of µ", include=(0.0,), column="contribution_percent")
     numbers = {"part": np.array(names), "contribution_percent": share}
     return FigureSpec(
-        title="Parts of the uncertainty",
+        title="Contributions to the uncertainty",
         panels=(Panel(x, Axis("", column="part"), name="parts"),),
         series=(
             Series("combined", share[:1], names[:1], "bars", ORANGE, name="parts", columns=numbers),

@@ -197,7 +197,7 @@ def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec
             axes += [axis] if k == 0 else []
     share_axis = Axis("share of the events", include=(0.0, 1.0), column="share")
     return FigureSpec(
-        title="How far friction drops",
+        title="Size of the drops",
         panels=tuple(Panel(axis, share_axis, name=axis.label) for axis in axes),
         series=tuple(series),
         across=3,
@@ -291,7 +291,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
                 )
             )  # fmt: skip
     return FigureSpec(
-        title="Steady or stick-slip at every speed",
+        title="Steady sliding or stick-slip",
         note="Open: steady or not decided; filled: friction rises and falls. Area: the drop.",
         panels=(Panel(SPEED_AXIS, Axis("", column="condition"), name="map"),),
         series=tuple(series),

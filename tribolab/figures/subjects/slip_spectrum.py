@@ -138,8 +138,8 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
                 Series("dominant oscillation", v, dominant, "points", ORANGE, panel, open=True)
             )
     return FigureSpec(
-        title="Power over that of noise, at every speed and frequency",
-        note="Only what is at least twice the noise is drawn.",
+        title="Power relative to noise, over speed and frequency",
+        note="Only power of at least twice the noise is drawn.",
         panels=tuple(Panel(SPEED_AXIS, y, label, name=label) for label in shown),
         series=tuple(series),
         across=min(len(shown), 2),

@@ -60,7 +60,7 @@ class Decision:
             raise AnalysisError(f"'{shown(self.action)}' is no decision{known}")
         for name in ("reason", "author"):
             if not getattr(self, name).strip():
-                raise AnalysisError(f"a decision wants its {name}")
+                raise AnalysisError(f"a decision must state its {name}")
         object.__setattr__(self, "date", _day(self.date))
         for name in _TIMES:
             value = getattr(self, name)

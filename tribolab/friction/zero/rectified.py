@@ -197,7 +197,7 @@ def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
     ):
         return SIGNED._replace(seen=clear >= limits.MIN_REVERSALS_WITH_DIP.value)
     like = high - low < limits.MAX_DIFFERENCE_OF_LEVELS.value * (high + low) / 2
-    why = f"{one_sign}, and the turns do not show whether it passes through zero"
+    why = f"{one_sign}, and the reversals do not show whether it passes through zero"
     return Fold("undecided: alike" if like else "undecided", why)
 
 

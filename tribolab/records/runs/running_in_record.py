@@ -119,10 +119,8 @@ class RunningIn:
                 f"{number(last or 0.0)}"
             )
         mean = number(self.mean_friction_coefficient or 0.0)
-        cure = 'State steady = "auto" in [segments] to leave the rest out'
-        return (
-            f"{' '.join(parts)}; the mean over the whole run, its ends included, is {mean}. {cure}"
-        )
+        cure = 'To exclude that part, state steady = "auto" in [segments]'
+        return f"{' '.join(parts)}; the mean over the whole run is {mean}. {cure}"
 
     def row(self) -> Row:
         """Return the running-in as a row of a table."""

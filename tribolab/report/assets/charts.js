@@ -44,7 +44,7 @@ report.charts = (() => {
       await chartOf(figure).draw();
     } catch (error) {
       if (typeof DecompressionStream !== "undefined") throw error;
-      const words = "This browser is too old for more than a picture of the figure; the tables have its numbers.";
+      const words = "This browser is too old for interactive figures; only a picture is shown. The numbers are in the tables.";
       figure.querySelector(".plot").after(Object.assign(document.createElement("p"), { className: "note", textContent: words }));
     }
   }

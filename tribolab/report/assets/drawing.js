@@ -59,7 +59,7 @@ report.drawing = (() => {
     library ??= (async () => {
       const code = await report.unpacked(document.getElementById("library").textContent);
       document.head.append(Object.assign(document.createElement("script"), { textContent: new TextDecoder().decode(code) }));
-      if (!globalThis.Plotly) throw new Error("the library that draws was stopped");
+      if (!globalThis.Plotly) throw new Error("the plotting library was blocked");
       return globalThis.Plotly;
     })();
     return library;

@@ -98,7 +98,7 @@
       packed.parts ??= report.unpacked(packed.textContent).then((bytes) => new TextDecoder().decode(bytes).split("<!--next run-->"));
       place.innerHTML = (await packed.parts)[part];
     } catch {
-      place.textContent = "This browser cannot unpack the details of a run; their numbers are in report.json and tables/.";
+      place.textContent = "This browser cannot show the details of a run; the numbers are in report.json and tables/.";
     }
     details.append(place);
     report.dress?.(place);

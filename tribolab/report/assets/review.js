@@ -33,7 +33,7 @@ report.book = (() => {
       state = { pending, withdrawn, downloaded, past };
     } catch {
       write(`${PLACE}-unread`, text); // not ours to throw away
-      trouble = "What this browser kept of earlier decisions cannot be read; it is left where it was.";
+      trouble = "Earlier decisions stored in this browser cannot be read. They were not deleted.";
     }
     settle();
   }
@@ -61,7 +61,7 @@ report.book = (() => {
     else state.pending = state.pending.filter((one) => nameOf(one) !== name);
   }
 
-  // Which segment an interval means: the one that holds more than half of it, as the pipeline has it.
+  // Which segment an interval means: the one that contains more than half of it, as in the pipeline.
   function segmentOf(entry, found) {
     if (entry.start_s === null) return null;
     if (entry.applied && entry.segments.length) return entry.segments[0] - 1;
@@ -92,7 +92,7 @@ report.book = (() => {
   function decide(entry, segment, found) {
     const every = of(entry.run, found);
     if (entry.action === "accept" && segment !== null && every.some((one) => one.segment === null && one.action === "reject" && one.state !== "withdrawn")) {
-      return "The whole run is rejected: take that back first.";
+      return "The whole run is rejected; undo that first.";
     }
     change(() => {
       for (const one of displaced(entry, segment, every)) without(one);

@@ -29,8 +29,8 @@ report.reviewing = (() => {
     document.documentElement.classList.toggle("deciding", !bar.hidden);
     bar.classList.toggle("unsaved", unsaved > 0);
     bar.querySelector(".count").textContent = unsaved ? `${many(unsaved, "decision")} not yet downloaded` : `${many(own.length, "decision")} downloaded`;
-    const next = `Put ${file} next to ${campaign} in place of the one there, and run the campaign again.`;
-    const kept = book.stored ? "Kept in this browser until then." : "This browser keeps nothing of it: it is lost when the page is closed.";
+    const next = `Save ${file} next to ${campaign}, replacing any earlier one, and run the campaign again.`;
+    const kept = book.stored ? "Until then, the decisions are stored in this browser." : "This browser cannot store them: they are lost when you close the page.";
     bar.querySelector(".next").textContent = [book.trouble, unsaved ? kept : next].filter(Boolean).join(" ");
     bar.classList.toggle("unkept", !book.stored);
     bar.querySelector("[data-review=undo]").disabled = !book.canUndo;
@@ -48,7 +48,7 @@ report.reviewing = (() => {
   }
   function item(one) {
     const made = document.createElement("li"), there = runOf(one.run), name = document.createElement(there ? "a" : "span");
-    name.textContent = there ? one.run : `${one.run} (no run of this page)`;
+    name.textContent = there ? one.run : `${one.run} (run is not on this page)`;
     if (there) name.href = `#${there.id}`;
     const where = one.start_s === null ? "the whole run" : `${Number(one.start_s.toPrecision(5))} to ${Number(one.stop_s.toPrecision(5))} s`;
     made.append(name, ` ${one.state === "withdrawn" ? "no longer: " : ""}${one.action}, ${where}: ${one.reason} (${one.author}, ${one.date}) `);
@@ -102,7 +102,7 @@ report.reviewing = (() => {
   }
 
   const ofRun = { s: (panel) => panel.step(1), S: (panel) => panel.step(-1), w: (panel) => panel.choose(null), r: (panel) => panel.begin("reject"), a: (panel) => panel.begin("accept"), b: (panel) => panel.begin("bounds"), n: (panel) => panel.begin("note") };
-  const ofPage = { d: () => doubtful(1), D: () => doubtful(-1), u: acts.undo, l: () => (book.unsaved() || book.own.length ? book.download() : say("Nothing was decided here.")), "?": acts.help };
+  const ofPage = { d: () => doubtful(1), D: () => doubtful(-1), u: acts.undo, l: () => (book.unsaved() || book.own.length ? book.download() : say("There are no decisions to download.")), "?": acts.help };
   document.addEventListener("keydown", async (event) => {
     const busy = event.target.closest?.("input, textarea, select, [contenteditable], dialog");
     if (!keys || busy || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;

@@ -94,7 +94,7 @@ report.ReviewPanel = (() => {
     }
 
     async begin(action) {
-      if (action === "bounds" && this.chosen === null) return this.say("Choose a segment first: its bounds can be moved.");
+      if (action === "bounds" && this.chosen === null) return this.say("Choose a segment first; only segments have bounds.");
       this.draft = { action, bounds: action === "bounds" ? [...this.boundsOf(this.chosen)] : undefined };
       const same = this.on.find((one) => one.action === action && one.state !== "withdrawn" && action !== "note");
       this.form.elements.reason.value = same?.reason ?? "";
@@ -130,11 +130,11 @@ report.ReviewPanel = (() => {
     // What is wrong with the bounds that were typed or dragged; "" if nothing is.
     wrong() {
       const [low, high] = this.limits, [start, stop] = this.draft.bounds, [from, to] = this.segments[this.chosen];
-      if (![start, stop].every(Number.isFinite)) return "Bounds are numbers of seconds.";
-      if (start >= stop) return "A segment ends after it begins.";
-      if (start < low || stop > high) return `Bounds lie between ${brief(low)} and ${brief(high)} s: the run and the other segments.`;
+      if (![start, stop].every(Number.isFinite)) return "State the bounds as numbers, in seconds.";
+      if (start >= stop) return "The end of a segment must be after its start.";
+      if (start < low || stop > high) return `The bounds must be between ${brief(low)} and ${brief(high)} s, within the run and outside the other segments.`;
       if (start >= to || stop <= from) return "The new bounds lie outside the segment.";
-      return start === from && stop === to ? "Nothing was moved." : "";
+      return start === from && stop === to ? "The bounds are unchanged." : "";
     }
 
     submit() {
@@ -146,8 +146,8 @@ report.ReviewPanel = (() => {
       }
       const why = reason.value.trim(), who = (report.book.author || author.value).trim();
       let wrong = action === "bounds" ? this.wrong() : "";
-      if (!wrong && !who) author.focus(), wrong = "A decision wants its author.";
-      else if (!wrong && !why) reason.focus(), wrong = "A decision wants its reason.";
+      if (!wrong && !who) author.focus(), wrong = "State who decided.";
+      else if (!wrong && !why) reason.focus(), wrong = "State the reason.";
       if (!wrong) wrong = this.decide(action, why, who);
       this.form.querySelector(".wrong").textContent = wrong;
       if (wrong) return;
@@ -193,7 +193,7 @@ report.ReviewPanel = (() => {
       const { draft, form } = this;
       form.hidden = !draft;
       if (!draft) return form.querySelector(".wrong").textContent = "", form.reset();
-      const what = { reject: "Reject", accept: "Accept in spite of the checks", bounds: "New bounds of", note: "Note on" }[draft.action];
+      const what = { reject: "Reject", accept: "Accept despite the checks", bounds: "New bounds of", note: "Note on" }[draft.action];
       form.querySelector(".what").textContent = `${what} ${this.nameOf(this.chosen)}`;
       form.querySelector(".ends").hidden = !draft.bounds;
       form.querySelector(".who").hidden = Boolean(report.book.author);

@@ -85,7 +85,9 @@ def along_figures(runs: Sequence[Along], count: int) -> list[FigureSpec]:
         series = [drawn for run in runs for drawn in _series(run, runs, column, ends)]
         if not series or (name == "cycles" and all(r.counted == STRETCHES for r in runs)):
             continue
-        which = f" The first {len(runs)} of {count} runs." if count > len(runs) else ""
+        which = (
+            (f" Only the first {len(runs)} of {count} runs are drawn.") if count > len(runs) else ""
+        )
         wear = any(drawn.panel for drawn in series)
         figures.append(
             FigureSpec(

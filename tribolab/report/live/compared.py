@@ -21,7 +21,7 @@ from tribolab.report.live.curves import (
 from tribolab.report.live.points import RunPoint, of_curve
 from tribolab.report.plain import plain_speed
 
-_SHARE = Axis("µ over its highest value")
+_SHARE = Axis("µ / maximum of µ")
 _HALF = 0.5
 
 
@@ -53,13 +53,15 @@ def _normalised_curves(known: FrictionOverSpeed, colours: Mapping[str, int]) -> 
     if len(series) < 2:
         return []
     speeds = [v for drawn in series for v in drawn.x]
-    half = Series("half of it", [min(speeds), max(speeds)], [_HALF, _HALF], "dotted", colour=6)
+    half = Series(
+        ("half the maximum"), [min(speeds), max(speeds)], [_HALF, _HALF], "dotted", colour=6
+    )
     figure = FigureSpec(
         id="curves-compared",
         section="curves",
-        title="At which speed friction falls",
-        note="Each curve over its own highest friction, so that all plateaus are "
-        "at 1. Bars: U95 of the point. "
+        title="Transition speeds",
+        note="µ of each curve divided by its maximum, so all plateaus are at 1. Bars: U95 of the "
+        "point. "
         + distinguish_media([curve.outcome.medium for curve in known.curves], "filled", "open"),
         alt=f"Friction relative to its highest value over sliding speed of "
         f"{many(len(series), 'curve')}.",

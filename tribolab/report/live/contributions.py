@@ -76,9 +76,10 @@ def contribution_figures(curves: Sequence[CurveRecord]) -> list[FigureSpec]:
         FigureSpec(
             id="uncertainty-parts",
             section="uncertainty",
-            title="Parts of the uncertainty",
+            title="Contributions to the uncertainty",
             note=f"{_advice(parts, share, count)} Root mean square over {many(count, 'point')}.",
-            alt=f"Standard uncertainty of the friction coefficient by {many(len(kept), 'part')}.",
+            alt="Standard uncertainty of the friction coefficient: "
+            f"{many(len(kept), 'contribution')}.",
             panels=(Panel(Axis("standard uncertainty", "% of µ"), Axis("")),),
             series=(Series("part", [size[part] for part in kept], kept, style="bars"),),
             width="whole",
@@ -93,9 +94,9 @@ def _advice(parts: dict[str, list[Contribution]], share: dict[str, float], count
     first = max(share, key=lambda part: share[part])
     gains = {part: sum(each.gain for each in mine) / count for part, mine in parts.items()}
     best = max(gains, key=lambda part: gains[part])
-    text = f"Largest part: {first} ({percent(share[first])} of the variance)."
+    text = f"Largest contribution: {first} ({percent(share[first])} of the variance)."
     if gains[best] < _MIN_GAIN:
         return text
     means = {BETWEEN: "One more repeat of each condition", NOISE: "Records four times as long"}
-    what = means.get(best, f"Half the uncertainty of “{best}”")
+    what = means.get(best, f"Halving the uncertainty of “{best}”")
     return f"{text} {what} would reduce U95 by about {percent(gains[best])}."

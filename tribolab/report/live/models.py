@@ -145,11 +145,11 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Figur
     return FigureSpec(
         "model-sensitivity",
         "model",
-        "What moves the model most",
-        "How far friction moves at most, in per cent of the height of the model's curve, when one "
-        "thing that is not known goes from one end of its range to the other.",
-        "Bars: largest change of the computed friction for each thing that is not known.",
-        (Panel(Axis("largest change of µ", "% of the curve's height", log=True), Axis("")),),
+        "Sensitivity of the model to its inputs",
+        "Largest change of the computed friction if one uncertain input goes from one end of its "
+        "range to the other, in per cent of the peak friction of the model.",
+        "Bars: largest change of the computed friction for each uncertain input.",
+        (Panel(Axis("largest change of µ", "% of the peak friction", log=True), Axis("")),),
         tuple(series),
         one_load=True,
         width="whole",
@@ -161,7 +161,7 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Figur
 def _change_tooltip(change: Row) -> str:
     share, speed = (number_of(change, f"largest_change{end}") for end in ("", "_speed_m_s"))
     lines = [str(change["variation"]), f"{change['low'] or '–'} to {change['high'] or '–'}"]
-    lines.append(f"moves µ by {percent(share)} of the curve's height")
+    lines.append(f"changes µ by {percent(share)} of the peak friction")
     lines.append(f"at {plain_speed(speed)}")
     return "\n".join([*lines, str(change["reason"])])
 

@@ -51,7 +51,7 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
             title="Friction vs. speed, ramps",
             note="Means and standard deviations over small ranges of speed. Filled: the speed "
             "rises; open: it falls. The zero of the friction force is not removed.",
-            alt=f"Friction over the momentary speed of {many(len(runs), 'run')}.",
+            alt=f"Friction over the instantaneous speed of {many(len(runs), 'run')}.",
             panels=(
                 Panel(Axis("sliding speed v", "m/s", log=True), Axis("friction coefficient µ")),
             ),

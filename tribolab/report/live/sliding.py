@@ -142,7 +142,7 @@ def _waveform_curve(contact: Judged) -> xr.Dataset:
 
 def _waveform_note(waveforms: Collection[str]) -> str:
     if set(waveforms) <= _STEADY:
-        return "Of each condition, at each speed."
+        return "Class for each condition and speed."
     undecided = " or not decided" if _UNDECIDED in waveforms else ""
     return f"Open: steady sliding{undecided}; filled: friction rises and falls."
 
@@ -178,8 +178,8 @@ def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> Figure
         "sliding-frequencies",
         "sliding",
         "Frequency of the strongest oscillation",
-        "Where the distance from drop to drop is fixed, the frequency rises in proportion to "
-        "the speed; where a resonance is excited, it stays.",
+        "With a fixed slip distance, the frequency is proportional to the speed. A resonance "
+        "keeps its frequency.",
         "Dominant frequency over sliding speed.",
         (Panel(SPEED_AXIS, Axis("frequency", "Hz", log=True)),),
         tuple(series),
@@ -261,7 +261,7 @@ def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
     """Return the legend of the line styles for the main and the secondary quantity."""
     wet, dry = (
         f"{looked}: {first}; {other_dash}: {second}"
-        for looked, other_dash in (("full", "dotted"), ("dashed", "dots and dashes"))
+        for looked, other_dash in (("solid line", "dotted"), ("dashed", "dash-dotted"))
     )
     media = _media(opened)
     if not distinguish_media(media, "", ""):
@@ -290,7 +290,7 @@ def _traces(opened: Sequence[_Opened]) -> FigureSpec:
         "sliding-traces",
         "sliding",
         "Friction over sliding distance at the slowest speeds",
-        _line_legend(opened, "the slowest speed", "the next")
+        _line_legend(opened, "slowest speed", "next speed")
         + " At the lowest load of each surface and medium.",
         "Friction over sliding distance, a line for each condition and speed.",
         (Panel(Axis("sliding distance", unit), Axis("friction coefficient µ")),),
@@ -315,8 +315,10 @@ def _spectra(opened: Sequence[_Opened]) -> FigureSpec:
         "sliding-spectra",
         "sliding",
         "Spectra of friction at the slowest speed",
-        _line_legend(opened, "the power", "what noise exceeds in one spectrum of a thousand")
-        + " What rises above that is an oscillation.",
+        _line_legend(
+            opened, "power", ("level that noise alone exceeds in one spectrum of a thousand")
+        )
+        + " A peak above that level is an oscillation.",
         "Power spectrum of the friction coefficient over frequency.",
         (Panel(Axis("frequency", "Hz", log=True), Axis("power spectrum of µ", "1/Hz", log=True)),),
         tuple(series),
@@ -334,8 +336,8 @@ def _events(opened: Sequence[_Opened]) -> FigureSpec:
     return FigureSpec(
         "sliding-events",
         "sliding",
-        "How far friction drops",
-        "Share of the drops, at all speeds of a run, that are smaller than a value. "
+        "Size of the drops",
+        "Cumulative distribution of the drops of µ, all speeds of a run together. "
         + distinguish_media(_media(opened), "full", "dashed"),
         "Cumulative distribution of the drops of friction.",
         (Panel(Axis("drop of µ", log=True), Axis("share of drops below")),),
@@ -357,14 +359,14 @@ def _spectrogram(opened: Sequence[_Opened]) -> FigureSpec:
     return FigureSpec(
         "sliding-spectrogram",
         "sliding",
-        "Power over that of noise, at every speed and frequency",
+        "Power relative to noise, over speed and frequency",
         " ".join(
             filter(
                 None,
                 (
-                    "Only what is at least twice the noise is drawn.",
+                    "Only power of at least twice the noise is drawn.",
                     distinguish_media(_media(opened), "filled", "open"),
-                    "Switch conditions on and off in the legend." if len(series) > 1 else "",
+                    "Click on the legend to hide or show a condition." if len(series) > 1 else "",
                 ),
             )
         ),

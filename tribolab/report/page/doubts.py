@@ -15,7 +15,9 @@ _GRAVE = ("error", "fail", "suspect")
 _MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in the doubt about runs left out
 _REPEATS = "repeats"  # name of the check
 _COMPARE = "Compare its trace with those of its repeats."
-_COMPARE_ALL = "They are still in the means. Compare their traces with those of their repeats."
+_COMPARE_ALL = (
+    "They are still included in the means. Compare their traces with those of their repeats."
+)
 _UNCERTAIN = 0.25  # U95 of a mean over the mean, above which only one digit is certain
 _UNCALIBRATED = "statistical only"
 

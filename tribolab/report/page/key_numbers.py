@@ -74,7 +74,7 @@ def _at_speed(row: Mapping[str, Any]) -> str:
 
 def _zero(document: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
     runs = [run for run in document["runs"] if run["name"] in curve["runs"]]
-    return ", without zero" * any(has_unknown_zero(run["checks"]) for run in runs)
+    return ", zero unknown" * any(has_unknown_zero(run["checks"]) for run in runs)
 
 
 def _stress(fit: Mapping[str, Any] | None) -> str:

@@ -149,7 +149,7 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
                 "export the profile as text (csv)"
             )
         raise ReadError(
-            f"its format is not known, neither here nor to SurfaceTopography{tried}",
+            f"its format is not known to tribolab or SurfaceTopography{tried}",
             where=path,
             cure=cures.unknown_instrument(path, cures.SURFACE),
         )
