@@ -101,7 +101,7 @@ def test_numbers_without_names_are_asked_about_and_not_read(tmp_path):
 def test_the_commands_take_the_same_way(good, unclear, tmp_path):
     told = command("info", good, unclear)
     assert told.exit_code == 3 and "bon essai.csv: drafted from the file\n" in told.stdout
-    assert f"to_keep_it: tribolab info '{good}' --write my.toml" in told.stdout
+    assert f"to keep it: tribolab info '{good}' --write my.toml" in told.stdout
     assert "column 2 'Reibkraft'" in told.stderr and "name it with --instrument" in told.stderr
     checked = command("check", good)
     assert checked.exit_code != 3 and "unreadable" not in checked.stdout

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -49,6 +50,15 @@ _SHOWN_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 _SHOWN_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
 _INSTALL = "install it: pip install 'tribolab[formats]'"
 _OF_MOTION = {"sliding_velocity", "position", "rotation_speed", "step", "set_speed"}
+_UNIT_END = re.compile(r"_(m_s|m_per_s|s|m|N|Hz|K|Pa|rad|kg)$")
+_UNITS = {"m_s": "m/s", "m_per_s": "m/s"}
+_WORDS = {
+    "speed_from": "sliding speed from",
+    "time_origin_s": "first time",
+    "time_source": "time from",
+}
+# attributes that say nothing beyond the lines above
+_USUAL = {"speed_from": ("column", "none"), "time_origin_s": (0.0,), "time_source": ("recorded",)}
 _ROUNDING = 1e-6  # share of a step: positions with smaller deviations are evenly spaced
 
 
@@ -288,7 +298,35 @@ def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
         from tribolab.reading.unknown.proposal.questions import how_to_keep
 
         others["to_keep_it"] = how_to_keep(str(path))
-    return [f"  {key}: {shown(_value_text(value), _MAX_TEXT)}" for key, value in others.items()]
+    return [
+        f"  {_key_words(key)}: {shown(_value_text(value) + _unit_of(key, value), _MAX_TEXT)}"
+        for key, value in others.items()
+        if value not in _USUAL.get(key, ())
+    ]
+
+
+def _unit_of(key: str, value: object) -> str:
+    """Return the unit of a number, from the end of its key.
+
+    Examples
+    --------
+    >>> _unit_of("track_radius_m", 0.02), _unit_of("set_speed_m_s", 0.01), _unit_of("step_m", "a")
+    (' m', ' m/s', '')
+    """
+    end = _UNIT_END.search(key)
+    known = end is not None and isinstance(value, float)
+    return f" {_UNITS.get(end[1], end[1])}" if end is not None and known else ""
+
+
+def _key_words(key: str) -> str:
+    """Return the key of an attribute in words.
+
+    Examples
+    --------
+    >>> _key_words("track_radius_m"), _key_words("speed_from"), _key_words("recorded_at")
+    ('track radius', 'sliding speed from', 'recorded at')
+    """
+    return _WORDS.get(key) or _UNIT_END.sub("", key).replace("_", " ")
 
 
 def _value_text(value: object) -> str:
