@@ -4,14 +4,18 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import PointContact
+from tribolab.lubrication.parameters import Solver
 
 BALL = PointContact("9.5 mm", "1 MPa", 0.5)
 STRESS = 1e5  # Pa
+COARSE = Solver(cells=60)  # for what holds on any mesh
 # viscosity times speed [N/m]: friction of the fluid, area per force [1/Pa], film in the middle [m]
 TABLE = {
     0.0: (0.0, 1.1818e-6, 0.134e-6),
+    1e-7: (2.2e-5, 1.1299e-6, 0.172e-6),
     1e-6: (1.95e-4, 9.812e-7, 0.247e-6),
     1e-5: (0.00149, 7.065e-7, 0.395e-6),
+    3.16e-5: (0.00377, 5.347e-7, 0.517e-6),
     1e-4: (0.00865, 3.562e-7, 0.699e-6),
     3.16e-4: (0.01663, 1.842e-7, 1.005e-6),
     1e-3: (0.02097, 5.05e-8, 1.633e-6),

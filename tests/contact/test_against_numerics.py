@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ball_cases import BALL, STRESS, ball_psd
+from ball_cases import BALL, COARSE, STRESS, ball_psd
 from contact_cases import CONTACT, reference_psd
 
 from tribolab.contact.geometry import PointContact
@@ -19,10 +19,6 @@ SPEEDS = [1e-4, 1e-3, 1e-2, 0.1]
 WET = Liquid(1.4, outlet="flooded")
 
 
-def fluid(curve):
-    return (curve.friction_coefficient - curve.friction_coefficient_solid).values
-
-
 def conserved(curve):
     return max(abs(curve[name]).max() for name in ("load_balance", "flux_variation")) < 1e-8
 
@@ -34,15 +30,6 @@ def test_jkr_of_a_ball_at_any_load():
     expected = (0.75 * BALL.radius / BALL.effective_modulus * size) ** (1 / 3)
     found = [jkr_half_width(float(force), BALL, work) for force in load]
     assert found == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.slow
-def test_a_rough_ball_between_the_speeds_of_the_other_table():
-    wet, area, film = np.array([(2.2e-5, 1.1299e-6, 0.172e-6), (0.00377, 5.347e-7, 0.517e-6)]).T
-    curve = stribeck_curve(BALL, ball_psd(), 1.0, 3.0, STRESS, [1e-7, 3.16e-5])
-    assert curve.friction_coefficient.values == pytest.approx(wet + STRESS * area, rel=2e-3)
-    assert curve.friction_per_shear_stress.values == pytest.approx(area, rel=2e-3)
-    assert curve.central_separation.values == pytest.approx(film, rel=5e-3)
 
 
 @pytest.mark.slow
@@ -78,21 +65,6 @@ def test_strips_are_too_low_at_a_light_load_beyond_their_limit():
     ratio = strips / full
     assert np.all((ratio[:2] > 0.925) & (ratio[:2] < 1.005))
     assert ratio[2:] == pytest.approx([0.83, 0.5], abs=0.015)
-
-
-@pytest.mark.slow
-def test_a_flooded_ball_drags_more_and_rubs_as_before_while_it_touches():
-    speeds = [1e-5, 1e-3, 0.01, 0.1, 1.0]
-    vented, flooded = (
-        stribeck_curve(BALL, ball_psd(), liquid, 3.0, STRESS, speeds)
-        for liquid in (Liquid(1.0), Liquid(1.0, outlet="flooded"))
-    )
-    more = fluid(flooded) / fluid(vented)
-    assert np.all((more[:2] > 1.02) & (more[:2] < 1.05))
-    assert more[2:] == pytest.approx([1.11, 1.23, 1.39], abs=0.01)
-    whole = flooded.friction_coefficient.values / vented.friction_coefficient.values
-    assert whole[0] == pytest.approx(1.01, abs=0.005)
-    assert conserved(flooded) and conserved(vented)
 
 
 @pytest.mark.parametrize(
@@ -150,8 +122,8 @@ def test_load_and_flux_are_conserved_with_every_option():
     ball = replace(BALL, thickness=2e-3, counter_modulus=3e6)
     thinning = Liquid(1.0, thinning=carreau_yasuda("10 s", 0.4, rest=0.002))
     curves = [
-        stribeck_curve(ball, None, 1.0, 3.0, 0.0, [1e-3]),
-        stribeck_curve(BALL, None, thinning, 3.0, 0.0, [1e-2]),
+        stribeck_curve(ball, None, 1.0, 3.0, 0.0, [1e-3], COARSE),
+        stribeck_curve(BALL, None, thinning, 3.0, 0.0, [1e-2], COARSE),
         stribeck_curve(CONTACT, reference_psd("Sb-S"), thinning, 310.0, 0.0, SPEEDS),
         stribeck_curve(replace(CONTACT, thickness=5e-3), None, WET, 310.0, 0.0, SPEEDS),
         stribeck_curve(CONTACT, None, 1.4, 310.0, Interface(0.0, slide_roll=0.5), SPEEDS),
@@ -169,6 +141,6 @@ def test_smooth_contacts_of_all_loads_have_one_curve(contact):
         a = float(hertz_half_width(load, contact))
         speed = 1e-4 * contact.effective_modulus * a**4 / contact.radius**3
         liquid = Liquid(1.0, extent=(8 if contact.is_round else 40) * a)  # scales, too
-        curve = stribeck_curve(contact, None, liquid, load, 0.0, [speed])
+        curve = stribeck_curve(contact, None, liquid, load, 0.0, [speed], COARSE)
         reduced.append(float(curve.friction_coefficient[0]) * contact.radius / a)
     assert reduced[0] == pytest.approx(reduced[1], rel=2e-3)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ball_cases import COARSE
 from contact_cases import CONTACT, reference_psd
 
 from tribolab.contact.geometry import LineContact, PointContact
@@ -155,7 +156,7 @@ def test_thinning_has_the_limits_of_newtonian_liquids():
 def test_a_ball_in_a_thinning_liquid_lies_between_its_newtonian_limits():
     ball = PointContact("9.5 mm", "1 MPa", 0.5)
     thick, thin, between = (
-        float(stribeck_curve(ball, None, liquid, 3.0, 0.0, [1e-2]).central_separation[0])
+        float(stribeck_curve(ball, None, liquid, 3.0, 0.0, [1e-2], COARSE).central_separation[0])
         for liquid in (Liquid(1.0), Liquid(0.002), Liquid(1.0, thinning=XANTHAN))
     )
     assert thin < between < thick
