@@ -215,5 +215,5 @@ def test_notes_in_the_results_survive_and_are_named(campaign):
     text = campaign.read_text("utf-8")
     campaign.write_text(text.replace("trim = 0.10", "trim = 0.2"), "utf-8")
     answer = CliRunner().invoke(app, ["run", str(campaign), *QUIET])
-    assert answer.exit_code == 0 and "left where they are: notes.md" in answer.output
+    assert answer.exit_code == 0 and "kept: notes.md" in answer.output
     assert note.read_text() == "squeal at 1 mm/s"

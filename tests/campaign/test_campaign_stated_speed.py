@@ -58,7 +58,7 @@ def test_a_recorded_speed_is_used_and_compared_with_the_stated_one(tmp_path):
     assert friction.sliding_speed.values == pytest.approx([2e-4])
     run = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="run")
     [finding] = [row for row in run.attrs["findings"] if row["check"] == "velocity_set"]
-    assert finding["status"] == "fail" and "off its set-point" in finding["message"]
+    assert finding["status"] == "fail" and "from its set-point" in finding["message"]
 
 
 def test_a_file_with_set_speeds_of_its_own_needs_none(tmp_path):

@@ -292,7 +292,7 @@ def spiked(original):
         ("a", "suspect", ["no objection lies in it alone"], ""),
         ("aa", "accepted", ["in spite of spikes"] * 2, "accepted by A, B in spite of"),
         ("ra", "accepted", ["1 segment rejected", "in spite of spikes"], "accepted by B"),
-        ("rr", "pass", ["1 segment rejected"] * 2, "lies in what A, B rejected"),
+        ("rr", "pass", ["1 segment rejected"] * 2, "within a part that A, B rejected"),
     ],
 )
 def test_an_objection_no_longer_counts_where_persons_decided_on_all_of_it(

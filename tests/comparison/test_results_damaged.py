@@ -111,7 +111,7 @@ def test_a_forged_table_with_a_matching_marker_is_told_by_recomputing_alone(camp
     Ledger(results).write(results)
     assert problems(results) == []
     [told] = recomputed(results, jobs=1)
-    assert told.startswith("tables/friction.csv: not what the raw files give, first at line")
+    assert told.startswith("tables/friction.csv: differs from the recomputed values, first at line")
 
 
 @pytest.mark.slow

@@ -118,7 +118,7 @@ for _name, _forge in FORGED.items():
             f"stored 2: {_command}, a marker with {_name}",
             *(_command, _forge),
             codes=(0, 1, 2) if _command == "run" else (0, 1, 2, 3),
-            says="not as tribolab wrote|--repair|missing|marker|unchanged|not as it was written"
+            says="since tribolab wrote|--repair|missing|marker|unchanged|not as it was written"
             "|holds something else|report:",
             after=_mended if _command == "run" else None,
             **LONG,

@@ -60,4 +60,4 @@ def test_samples_that_move_the_mean_are_no_matter_of_peaks(tmp_path):
     )
     assert found["status"] == "suspect"
     assert "they change the mean magnitude by 26.6%" in found["message"]
-    assert "[text] missing" in found["cure"]
+    assert "`missing` under [text]" in found["cure"]

@@ -89,7 +89,7 @@ def test_a_lone_force_log_is_suspect_for_want_of_a_speed_not_a_crash(tmp_path):
     ("log", "cure"),
     [
         ("force", "Put sb-r_dry_31N_01_motion.csv next to this file, or give both."),
-        ("motion", "Give the log of the forces with this one if the instrument writes two"),
+        ("motion", "If the instrument writes two logs, give both"),
     ],
 )
 def test_the_cure_of_a_lone_log_is_the_other_log_and_not_the_dialect(tmp_path, log, cure):
@@ -162,9 +162,7 @@ def test_the_rocks_change_of_rate_is_seen_and_lies_outside_the_segments(shared_d
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_the_second_header_of_cetr_is_a_step_and_not_a_gap(shared_data, number):
     _, found = verdict(shared_data, "cetr_umt2_MIT", f"HT-2n-6-4 2_00{number}.csv")
-    assert "the file holds 2 steps; the first goes over to the others at" in message(
-        found, "restarts"
-    )
+    assert "the file contains 2 steps; the first one ends at" in message(found, "restarts")
     known = objections(found)
     assert known.pop("segment_speed") == "suspect"  # start and stop lie inside its steps
     assert known.pop("segments") == "suspect"  # one pair of 86 samples each, known to a third
@@ -238,7 +236,7 @@ def test_the_commands_exit_code_is_the_level_asked_for(checked):
         assert done.exit_code == code, (status, options, done.stderr)
         if status == "suspect":
             assert "spikes" in done.stdout and "Look for switching devices" in done.stdout
-            assert "1 objected" in done.stdout
+            assert "1 with findings" in done.stdout
             assert ("saturation" in done.stdout) == ("--verbose" in options)
 
 

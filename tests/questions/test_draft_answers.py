@@ -222,7 +222,7 @@ def test_lines_that_may_state_the_load_are_quoted(answer, tmp_path, monkeypatch)
     rows = "".join(f"{n / 20:.2f},{3 + n % 3}\n" for n in range(200))
     file.write_text(f"Thing on top: 102 gf\nTime [s],Friction force [N]\n{rows}")
     done = describe(file.name, "--ask", typed=f"\n\n{answer}\n1 mm/s\n")
-    assert "does 'Thing on top: 102 gf' say it?" in done.output, done.output
+    assert "is it in 'Thing on top: 102 gf'?" in done.output, done.output
     np.testing.assert_allclose(tl.read(file, "stage.toml").normal_force, 0.102 * 9.80665)
     file.write_text(file.read_text().replace("102 gf", "204 gf"))
     np.testing.assert_allclose(tl.read(file, "stage.toml").normal_force, 0.204 * 9.80665)
@@ -234,7 +234,7 @@ def test_yes_to_the_line_of_a_speed_holds_for_other_files(tmp_path, monkeypatch)
     rows = "".join(f"{n / 20:.2f},{3 + n % 3}\n" for n in range(200))
     file.write_text(f"Load: 10 N\nGoes: 6 mm/min\nTime [s],Friction force [N]\n{rows}")
     done = describe(file.name, "--ask", typed="\n\n\nyes\n")
-    assert "does 'Goes: 6 mm/min' say it?" in done.output, done.output
+    assert "is it in 'Goes: 6 mm/min'?" in done.output, done.output
     assert float(tl.read(file, "pull.toml").set_speed[0]) == pytest.approx(1e-4)
     file.write_text(file.read_text().replace("6 mm/min", "60 mm/min"))
     assert float(tl.read(file, "pull.toml").set_speed[0]) == pytest.approx(1e-3)
@@ -281,7 +281,7 @@ def test_strokes_may_be_typed_and_one_of_both_is_not_enough(tmp_path, monkeypatc
     file = write(tmp_path / "pin.csv", columns)
     done = describe(file.name, "--ask", typed="2 Hz\nstroke 8 mm, 2 Hz\n\n")
     assert (done.exit_code, done.stderr) == (0, "")
-    assert "strokes need a length, such as 8 mm, too" in done.stdout
+    assert "strokes also need a length, such as 8 mm" in done.stdout
     assert done.stdout.count("sliding_velocity m/s") == 2  # once a row, once as a line of blocks
     assert "friction coefficient 0.2 (U95, mean of 79;" in done.stdout.split("tried:")[1]
     said = tomllib.loads((tmp_path / "pin.toml").read_text())["speed"]
@@ -300,7 +300,7 @@ def test_turns_may_be_typed_with_the_radius_of_their_track(tmp_path, monkeypatch
     done = describe("disc.txt", "--ask", typed=typed)
     assert (done.exit_code, done.stderr) == (0, "")
     assert "normal force? (" not in done.stdout  # the file states it
-    assert "turns need the radius of their track: 8 rpm at 20 mm radius" in done.stdout
+    assert "a rotation speed needs the radius of the track: 8 rpm at 20 mm radius" in done.stdout
     assert "there is no column '8'" in done.stdout
     assert "15,5 has no unit: type it with one, such as 6 mm/min" in done.stdout
     run = tl.read("disc.txt", "disc.toml")

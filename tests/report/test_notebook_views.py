@@ -41,7 +41,7 @@ def test_findings_print_what_the_command_shows(spiked, tmp_path, capsys):
     summary, *rows = capsys.readouterr().out.splitlines()
     printed = str(found)
     assert printed.splitlines()[0] == summary
-    assert summary.startswith("<a>.csv: suspect (") and ", 1 objected, " in summary
+    assert summary.startswith("<a>.csv: suspect (") and ", 1 with findings, " in summary
     assert " ".join("".join(rows).split()) == " ".join(printed.split("\n", 1)[1].split())
     assert "function" not in repr(found.results)
 

@@ -119,4 +119,4 @@ def test_a_wave_that_repeats_in_a_rough_profile_is_told_and_no_other():
     status, message = told_of_waves(rough(0, wave=8e-8))
     assert status == "pass" and "a wave of 55" in message and "with 1.9 % of the mean" in message
     plain = [told_of_waves(rough(seed))[1] for seed in range(12)]
-    assert set(plain) == {"no wave and no lay stands out"}
+    assert set(plain) == {"no periodic wave or lay is visible"}

@@ -105,7 +105,7 @@ def test_dektak_s_rounded_positions_are_told_as_rounding(shared_data):
     found = check_scans(read_scans(shared_data / "surfacetopography_MIT" / "dektak-1.csv"))
     row = found.table.query("check == 'spacing'").iloc[0]
     assert row.status == "pass"
-    assert "look uneven" in row.message and "rounding" in row.message
+    assert "are uneven" in row.message and "rounding" in row.message
     assert row.value == pytest.approx(0.3, abs=0.05)
 
 

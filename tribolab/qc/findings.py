@@ -153,8 +153,8 @@ class Findings:
         passed = {n for n, statuses in by_check.items() if "pass" in statuses} - objecting
         skipped = len(by_check) - len(objecting) - len(passed)
         parts = [f"{Count(len(passed)):check|checks} passed"]
-        parts += [f"{len(objecting)} objected"] if objecting else []
-        parts += [f"{skipped} had nothing to look at"] if skipped else []
+        parts += [f"{len(objecting)} with findings"] if objecting else []
+        parts += [f"{skipped} skipped"] if skipped else []
         return f"{self.name}: {self.status} ({', '.join(parts)})"
 
     def messages(self, everything: bool = False) -> list[tuple[str, str, str, str]]:
@@ -193,7 +193,7 @@ class Findings:
         counted = ", ".join(f"{count} {status}" for status, count in self.count().items() if count)
         return (
             f"<p><b>{html.escape(self.name)}: {self.status}</b></p>{short if len(listed) else ''}"
-            f"<details><summary>everything that was asked: {counted}</summary>{long}</details>"
+            f"<details><summary>all checks: {counted}</summary>{long}</details>"
         )
 
 

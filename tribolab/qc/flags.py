@@ -154,7 +154,7 @@ def _pair(
         "flag_meanings": _MEANINGS,
     }
     of_tests: dict[str, object] = {
-        "long_name": f"checks that objected to {called}",
+        "long_name": f"checks that flagged {called}",
         "flag_masks": np.array([1 << bits[check] for check in known], dtype=np.int32),
         "flag_meanings": " ".join(known),
     }

@@ -52,7 +52,10 @@ class Result:
     @property
     def decision(self) -> str:
         """Decision of a person on the objection, as text; empty without one."""
-        words = {"accepted": "accepted by {} in spite of", "rejected": "lies in what {} rejected"}
+        words = {
+            "accepted": ("accepted by {} in spite of"),
+            "rejected": "within a part that {} rejected",
+        }
         return words[self.settled].format(self.settled_by) if self.settled else ""
 
 
@@ -148,7 +151,7 @@ def results_of_checks(
             continue
         try:
             results[name] = check.examine(subject, limits[name]) or [
-                Result("skipped", "", "no signal here that it looks at")
+                Result("skipped", "", "the data contain none of its signals")
             ]
         except Skip as why:
             results[name] = [Result("skipped", "", str(why))]

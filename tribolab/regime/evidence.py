@@ -45,7 +45,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
         text = "no stick-slip is seen at any speed"
         if "oscillation_swing" in slip and np.isfinite(slip["oscillation_swing"]).any():
             worst = float(slip["oscillation_swing"].max())
-            text += f"; swings of friction above {friction_text(worst)} would have been seen"
+            text += f"; oscillations of µ above {friction_text(worst)} would have been detected"
         return Evidence(AGAINST, text, "traces")
     speed = moving["sliding_speed"].values
     names, counts = np.unique(moving["waveform"].values.astype(str), return_counts=True)
@@ -63,7 +63,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     elif SINE in names and SAW not in names:
         text += ", rounded rather than abrupt"
     if REVERSED in names:
-        text += "; slow falls and sharp rises are what a sensor of turned sign shows: look at it"
+        text += "; slow falls and sharp rises suggest a sensor with reversed sign: check it"
     return Evidence(FOR, text, "traces")
 
 
@@ -86,8 +86,8 @@ def macroscopic_adhesion(known: Mode) -> Evidence | None:
     """Return evidence on whether adhesion reaches the macroscopic scale."""
     work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
     if work is None:
-        text = "the work of adhesion at magnification 1 is not known: it takes scans, a modulus "
-        text += "and the medium's work of adhesion"
+        text = "the work of adhesion at magnification 1 is not known: it requires scans, a "
+        text += "modulus and the medium's work of adhesion"
         return Evidence(UNTOUCHED, text, "adhesion")
     value = f"γ_eff(1) = {1e3 * work:.2g} mJ/m²"
     span = ""
@@ -95,9 +95,9 @@ def macroscopic_adhesion(known: Mode) -> Evidence | None:
         span = f" (between {1e3 * bounds[0]:.2g} and {1e3 * bounds[1]:.2g})"
     if work > 0:
         return Evidence(FOR, f"adhesion reaches the macroscopic scale, {value}{span}", "adhesion")
-    text = f"{value}{span}: no macroscopic instability can be driven by adhesion"
+    text = f"{value}{span}: adhesion cannot cause a macroscopic instability"
     if bounds is not None and bounds[1] > 0:
-        text = f"{value}{span}: adhesion is not expected to reach the macroscopic scale, but may"
+        text = f"{value}{span}: adhesion probably does not reach the macroscopic scale"
     return Evidence(AGAINST, text, "adhesion")
 
 
@@ -106,7 +106,7 @@ def vanishing_adhesion(known: Mode) -> Evidence | None:
     bounds = known.work_of_adhesion_range
     if not known.work_of_adhesion or bounds is None or bounds[0] > 0:
         return None
-    text = "within its bounds γ_eff(1) may also vanish, and no such mode would be possible"
+    text = "γ_eff(1) may be zero within its bounds; then no such mode is possible"
     return Evidence(AGAINST, text, "adhesion")
 
 
@@ -129,10 +129,12 @@ def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
     words = f"µ = {friction_text(mu[0])} at {speed_text(speed[0])}"
     words += f", {friction_text(mu[-1])} at {speed_text(speed[-1])}"
     if mu[-1] < (1 - _MIN_FALL) * mu[0]:
-        text = f"friction falls with speed where the traces oscillate ({words}): stick-slip of the "
-        return Evidence(AGAINST, text + "rig's own spring would look alike", "curve")
-    text = f"friction hardly falls where the traces oscillate ({words}): a spring alone, which "
-    return Evidence(FOR, text + "needs a fall to stick and slip, hardly explains it", "curve")
+        text = f"friction falls with speed where the traces oscillate ({words}): stick-slip caused "
+        return Evidence(AGAINST, text + "by the stiffness of the rig would look the same", "curve")
+    text = f"friction hardly falls where the traces oscillate ({words}): the stiffness "
+    return Evidence(
+        FOR, text + ("of the rig alone, which requires a fall, hardly explains it"), "curve"
+    )
 
 
 def strength(slip: xr.Dataset | None) -> Evidence | None:
@@ -163,8 +165,8 @@ def scaling(slip: xr.Dataset | None) -> Evidence | None:
         text = f"an oscillation at {own:.3g} Hz keeps its frequency at all speeds: a resonance of "
         return Evidence(UNTOUCHED, text + "the rig, not counted as stick-slip", "traces")
     if slip.attrs.get("scaling") == FIXED_FREQUENCY:
-        text = "the frequency does not go with the speed: something rings, as no fold that crosses "
-        return Evidence(AGAINST, text + "the contact does", "traces")
+        text = "the frequency is independent of speed: a resonance, not "
+        return Evidence(AGAINST, text + "folds that cross the contact", "traces")
     return None
 
 
@@ -173,7 +175,7 @@ def repeating(slip: xr.Dataset | None) -> Evidence | None:
     text = rig_wave_text(slip)
     if not text:
         return None
-    return Evidence(UNTOUCHED, f"{text}; it is taken out, not counted as stick-slip", "traces")
+    return Evidence(UNTOUCHED, f"{text}; it was removed and is not counted as stick-slip", "traces")
 
 
 def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | None:
@@ -203,7 +205,7 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
         band = f"; {inside:.0f} of {numbers['speeds_with_band']:.0f} speeds lie in the model's band"
     chance = numbers["model_misfit_p_value"]
     if np.isfinite(chance):
-        band = f" (probability {chance:.2g} that their errors alone make it so){band}"
+        band = f" (probability {chance:.2g} that errors alone cause this){band}"
     enough = is_sufficient(numbers)
     if enough is None:
         text = "the errors are too large to tell whether the mixed-lubrication model is sufficient:"

@@ -84,19 +84,19 @@ def _verdict_text(
             within = f"to within {percent_text(SUFFICIENT)} of the peak friction"
             return f"{steady}; mixed lubrication explains it {within}"
         return (
-            f"{steady}; mixed lubrication alone does not explain it, "
-            "and the traces suggest nothing else"
+            f"{steady}; mixed lubrication alone does not explain it, and the traces suggest no "
+            "other cause"
         )
     low, high = numbers["forced_wetting_low_m_s"], numbers["forced_wetting_high_m_s"]
     end = ""
     if np.isfinite(high):
         end = (
-            f"; from a speed between {speed_text(low)} and {speed_text(high)} on the motion would "
-            "drag liquid in (forced wetting)"
+            "; forced wetting (liquid entrainment) is expected to start between "
+            f"{speed_text(low)} and {speed_text(high)}"
         )
     if verdict == "not known":
         looked = slip is not None and slip.sizes.get("sliding_speed", 0)
-        what = "most traces do not decide it" if looked else "no trace was looked at"
+        what = "most traces are inconclusive" if looked else "no trace was evaluated"
         return f"not known: {what}"
     head = f"stick-slip{where}, {verdict}" if verdict == SUSPECTED else f"{verdict}{where}"
     return f"{head}{end}"
@@ -112,8 +112,8 @@ def suggestions(
         compare = (
             f"compare the wavelength, {1e3 * length:.3g} mm at every speed, with the "
             "circumference of the track (2 π times its radius), the pitch of the drive's screw and "
-            "the spacing of its teeth or rollers: if it is one of these, or a whole part of one, "
-            "it is the rig's and no stick-slip",
+            "the spacing of its teeth or rollers: if it equals one of these or an integer "
+            "fraction of it, the rig causes it and it is not stick-slip",
         )
     return (*compare, *_measurements(verdict, known, slip))
 
@@ -138,36 +138,46 @@ def _fixed_wavelength(slip: xr.Dataset | None) -> float:
 def _measurements(verdict: str, known: Mode, slip: xr.Dataset | None) -> tuple[str, ...]:
     if verdict == SUSPECTED:
         advice = [
-            "watch the contact through the transparent body: detached folds that cross it would "
-            "show the instability, a still picture would refute it",
-            "measure the pull-off force: it has to be finite where γ_eff(1) > 0",
+            "observe the contact through a transparent body: moving detachment folds confirm the "
+            "instability, their absence refutes it",
+            "measure the pull-off force: it must be finite if γ_eff(1) > 0",
         ]
         if known.fluid:
             advice.append(
-                "change the viscosity: forced wetting would move with viscosity times speed, "
-                "an instability of the rig would not"
+                "change the viscosity: the onset of forced wetting shifts with viscosity times "
+                "speed, an instability of the rig does not"
             )
         else:
             advice.append(
-                "change the stiffness of the rig: stick-slip of the rig would change its "
-                "wavelength, folds in the contact would not"
+                "change the stiffness of the rig: the wavelength of stick-slip caused by the rig "
+                "changes, that of folds in the contact does not"
             )
         return tuple(advice)
     if verdict == UNEXPLAINED:
         if known.work_of_adhesion is not None:
-            return ("change stiffness or mass of the rig: its own vibration would move with them",)
+            return (
+                (
+                    "change the stiffness or mass of the rig: the frequency of its own vibration "
+                    "changes"
+                ),
+            )
         return (
-            "give what γ_eff(1) is computed from: scans of the surface, the rubber's modulus, the "
+            "state the inputs of γ_eff(1): scans of the surface, the rubber's modulus, the "
             "medium's work of adhesion",
         )
     if verdict == "local stick-slip":
         return (
-            "change the stiffness of the rig: stick-slip of the rig as a whole would change",
-            "measure the pull-off force: it has to vanish where γ_eff(1) = 0",
+            "change the stiffness of the rig: stick-slip caused by the rig changes",
+            "measure the pull-off force: it must be zero if γ_eff(1) = 0",
         )
     if verdict == "not known":
         if slip is not None and slip.sizes.get("sliding_speed", 0):
-            return ("slide further at each speed: few periods look like slow drift",)
+            return (
+                (
+                    "slide further at each speed: a few periods cannot be distinguished from slow "
+                    "drift"
+                ),
+            )
         return ("record the friction force itself, not only its mean",)
     if known.work_of_adhesion is not None and known.work_of_adhesion > 0:
         return ("slide more slowly: adhesion would allow an instability at lower speeds",)
@@ -192,5 +202,5 @@ def paragraph(
         if mine:
             parts.append(f"{opening} {'; '.join(mine)}.")
     if decide:
-        parts.append(f"What would decide: {'; '.join(decide)}.")
+        parts.append(f"Deciding measurements: {'; '.join(decide)}.")
     return " ".join(parts)

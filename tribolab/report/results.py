@@ -222,7 +222,7 @@ def _part_notices(
     findings += [_failure(run) for run in outcome.runs if not run.done]
     findings += [Notice("fail", run.name, "run", run.kept) for run in outcome.runs if run.kept]
     findings += [Notice("fail", "", "decision", lost) for lost in outcome.lost_decisions]
-    text = "left out of the measured curves, because its checks failed; its own numbers are shown"
+    text = "excluded from the measured curves because a check failed; its own numbers are shown"
     findings += [
         Notice("note", run.name, "curves", text)
         for run in outcome.runs

@@ -166,7 +166,7 @@ def intermittent(rng) -> Trial:
 
 @tricky("16")
 def fast_wave_slow_logger(rng) -> Trial:
-    """Stick-slip with two to six samples in a period."""
+    """Stick-slip with two to six samples per period."""
     lab = draw_lab(rng)
     duration = rng.uniform(30, 100)
     rate = rng.uniform(400, 1500) / duration

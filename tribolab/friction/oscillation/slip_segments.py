@@ -62,8 +62,9 @@ _OF_SEGMENTS = (
 )
 
 _REVERSED = (
-    "friction falls slowly and rises sharply, as stick-slip does behind a sensor whose sign is "
-    "turned: look at the sensor's sense, and set `sign = -1` for the friction force in the dialect "
+    "friction falls slowly and rises sharply, as stick-slip does if the sign of the sensor is "
+    "reversed: look at the sensor's sense, and set `sign = -1` for the friction force in the "
+    "dialect "
     "if it is so"
 )
 

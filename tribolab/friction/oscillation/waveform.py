@@ -53,7 +53,7 @@ def describe_waveform(
     Parameters
     ----------
     values
-        Evenly sampled, some 48 samples in a period (time).
+        Evenly sampled, some 48 samples per period (time).
     lag
         Samples over which the derivative is taken.
     events

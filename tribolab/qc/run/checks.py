@@ -32,8 +32,8 @@ _SEGMENTS = "segments"
 _OF_POINTS = {"schema", "rows_left_out", "said_elsewhere", "zero_reference", "friction_sign"}
 _OF_POINTS |= {"normal_force_error", "segments", "missing"}
 _NO_SAMPLES = "its rows are results, not samples"
-_NOTHING_EXAMINED = "every check was skipped: nothing says that this run is sound"
-_EXAMINE = "Look at why each was skipped; the signals that they look at may have other names."
+_NOTHING_EXAMINED = "every check was skipped, so the quality of this run is unknown"
+_EXAMINE = "See the reason for each; perhaps the signals have other names."
 
 
 def check_run(

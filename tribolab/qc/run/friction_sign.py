@@ -28,7 +28,7 @@ def _reversed_slip(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
     where, count = subject.segment_label(first), int(reversed_.sum())
     text = (
         f"friction falls slowly and rises sharply in {Count(count):segment|segments}, as "
-        "stick-slip does behind a sensor whose sign is turned"
+        "stick-slip does if the sign of the sensor is reversed"
     )
     return [Result("suspect", subject.required_friction_signal, text, where=where, count=count)]
 
@@ -85,7 +85,7 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     value, count = float(values[first]), int(wrong.sum())
     cure = _cure_of_sign(subject, right, wrong)
     if small := int((np.isfinite(values) & ~wrong & ~right).sum()):
-        text += f"; in {small} more it is too small to decide"
+        text += f"; in {small} more, friction is too small to decide"
     return [Result("fail", signal, text, value, unit, where, count, samples, cure=cure)]
 
 
@@ -101,7 +101,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
     both = all((direction[wrong] == d).any() for d in (1, -1))
     if _unsigned_speed(subject) and right.any():
         return (
-            "The velocity is nowhere negative, the friction force is: the speed was recorded "
+            "The velocity is never negative but the friction force is, so the speed was recorded "
             "without its sign. Name its column `set_speed` in the dialect (the force gives the "
             "direction), or record the position."
         )
@@ -116,7 +116,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
         return (
             "One direction alone cannot distinguish a wrong sign from a zero error larger than "
             "friction: measure both directions or an unloaded rest; set `sign = -1` in the "
-            "dialect only if the zero is sure."
+            "dialect only if the zero is reliable."
         )
     raw = subject.segment_means(subject.required_friction_signal)
     forward, backward = (float(np.nanmean(raw[direction == d])) for d in (1, -1))
@@ -140,8 +140,12 @@ FRICTION_SIGN = Check(
     "Does friction oppose the motion?",
     "Set `sign = -1` for the force or the velocity in the dialect.",
     {
-        "errors": Limit(3.0, "1", "friction that is zero within its error has no sign"),
-        "share": Limit(0.01, "1", "friction below 1 % of the run's typical value has no sign"),
+        "errors": Limit(
+            3.0, "1", ("the sign of friction that is zero within its error is unreliable")
+        ),
+        "share": Limit(
+            0.01, "1", ("the sign of friction below 1 % of the run's typical value is unreliable")
+        ),
         "of_load": Limit(
             0.5,
             "1",

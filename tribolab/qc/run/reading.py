@@ -20,7 +20,7 @@ from tribolab.reading.runs.force_ratio import LARGEST, SMALLEST
 def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     attrs = subject.run.attrs
     if "rows_in_file" not in attrs:
-        raise Skip("the run does not say how many rows its file had")
+        raise Skip("the number of rows in the file is not known")
     results = []
     for log, variable in (("", "time"), ("companion_", "companion log")):
         rows = int(attrs.get(f"{log}rows_in_file", 0))
@@ -163,9 +163,9 @@ def _recorded_coefficient(subject: RunSubject, limits: Mapping[str, float]) -> l
             "friction_coefficient",
             f"{text}, which is used",
             middle,
-            cure="See which is right: a gain, the arm of a lever or the load that was set may be "
-            "in one of them alone. To use what the file records, name no column of "
-            "'friction_force' in the instrument's description.",
+            cure="Find out which is right: only one of them may include a gain, a lever arm or the "
+            "set load. To use the recorded coefficient, remove the 'friction_force' column "
+            "from the instrument's description.",
         )
     ]
 

@@ -112,14 +112,14 @@ def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if not {"step", "cycle"} & set(subject.run):
         if joined:
             return joins
-        raise Skip("the instrument numbers no steps or cycles")
+        raise Skip("the file has no step or cycle numbers")
     changes = _step_changes(subject)
     if not changes.size:
         return joins or [Result("pass", "step", "one step", 1.0)]
-    text = f"the file holds {changes.size + 1} steps"
+    text = f"the file contains {changes.size + 1} steps"
     where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
     where += " ..." if changes.size > 5 else ""
-    text += f"; the first goes over to the others at {where}"
+    text += f"; the first one ends at {where}"
     return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True), *joins]
 
 
@@ -143,7 +143,7 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    text = "{count:sample repeats|samples repeat} one value longer than noise allows, {where}"
+    text = "{count:sample is|samples are} constant for longer than noise allows, {where}"
     # computed by formulas, from a load in the file header
     stated = subject.about.derived
     results = []
@@ -151,15 +151,13 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         steady = bool(np.nanmin(values) == np.nanmax(values))
         if name in stated and (steady or _is_stated(subject, name)):
             good = uniform(values.size, GOOD)
-            reason = (
-                f"{'one value for all of the run: it is ' if steady else ''}stated and not measured"
-            )
+            reason = f"{'constant during the whole run: ' if steady else ''}stated and not measured"
             results.append(Result("pass", name, reason, 0.0, flags=good))
             continue
         if name == "normal_force" and _is_set(subject, values):
             good = uniform(values.size, GOOD)
-            reason = "constant during the run while friction changes: a set-point and not "
-            reason += "measured, or the sensor is dead; name a set-point set_normal_force"
+            reason = "constant during the run while friction changes: a set-point or a dead "
+            reason += "sensor. Name the column of a set-point set_normal_force"
             results.append(Result("suspect", name, reason, 0.0, flags=good))
             continue
         flags = _drop_rests(subject, values, signals.stuck(values, limits["chance"]))
@@ -199,8 +197,8 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
             continue
         flags = _drop_rests(subject, values, signals.saturation(values))
         ends = f"{np.nanmax(values):.6g} or {np.nanmin(values):.6g} {subject.unit(name)}"
-        text = f"{{count:sample lies|samples lie}} at the end of the range ({ends}): "
-        text += "cut off there, {where}"
+        text = f"{{count:sample is|samples are}} clipped at the end of the range ({ends}), "
+        text += "{where}"
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
     return results
 
@@ -223,7 +221,7 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
         ratio = step / typical if typical > 0 else float("inf")
         coarse = step > limits["steps"] * max(noise, 1e-300) and ratio > limits["share"]
         text = (
-            f"one digit is {step:.4g} {subject.unit(name)}, {ratio:.2%} of the signal; "
+            f"the resolution is {step:.4g} {subject.unit(name)}, {ratio:.2%} of the signal; "
             f"the noise is {noise:.4g} {subject.unit(name)}"
         )
         results.append(Result("suspect" if coarse else "pass", name, text, ratio))
@@ -236,7 +234,7 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     for name, values in one_by_one(subject.force_signals.items()):
         flags = signals.spikes(values, limits["noise"])
         flags[joins] = NOT_EVALUATED  # the samples before belong to another step
-        text = "{count:single sample is an outlier|single samples are outliers}, {where}"
+        text = "{count:sample is an isolated outlier|samples are isolated outliers}, {where}"
         result = sample_result(name, flags, subject.time, text, fail_share=limits["fail"])
         if result.status in OBJECTIONS:
             moved = _mean_shift(values, flags)
@@ -269,8 +267,8 @@ def _mean_shift(values: np.ndarray, flags: np.ndarray) -> float:
 
 
 _MOVED = (
-    "Check what the instrument writes there. Put its code for overload or no value under "
-    "[text] missing in the dialect."
+    "If the value is a code for overload or for no value, list it in the dialect: `missing` under "
+    "[text]."
 )
 
 _SLIPS = (
@@ -293,7 +291,7 @@ RECORD_CHECKS = (
         0,
         "Do the signals exist, in SI units, and within physical limits?",
         "Correct quantity, unit, sign or scale of the column in the dialect.",
-        {"pulled": Limit(0.5, "1", "bodies pulled apart most of the time do not slide")},
+        {"pulled": Limit(0.5, "1", "bodies that are separated most of the time do not slide")},
         _schema,
     ),
     Check(
@@ -332,7 +330,13 @@ RECORD_CHECKS = (
         "Does the sampling rate change within a segment?",
         "Means are weighted by time, but spectra and errors need one rate. Set the rate "
         "of the logger before the segment starts.",
-        {"factor": Limit(1.5, "1", "between a drifting clock and the next setting of a logger")},
+        {
+            "factor": Limit(
+                1.5,
+                "1",
+                ("more than the drift of a clock, less than a step between logger settings"),
+            )
+        },
         _rate_changes,
     ),
     Check(
@@ -361,7 +365,9 @@ RECORD_CHECKS = (
         "Check cable and amplifier: a working signal has noise.",
         {
             "chance": Limit(1e-6, "1", "one false alarm in a million records"),
-            "fail": Limit(0.01, "1", "1 % of the samples changes a mean by its error bar"),
+            "fail": Limit(
+                0.01, "1", ("1 % of constant samples changes the mean by about its standard error")
+            ),
         },
         _stuck,
     ),
@@ -388,10 +394,11 @@ RECORD_CHECKS = (
         "spikes",
         10,
         "Are there spikes in single samples?",
-        "Look for switching devices nearby. Spikes hardly affect means, but extremes and spectra.",
+        "Look for switching devices nearby. Spikes hardly affect means, but they change extremes "
+        "and spectra.",
         {
             "noise": Limit(8.0, "1", "Gaussian noise exceeds it once in 1e15 samples"),
-            "fail": Limit(0.01, "1", "1 % of the samples is not a rare disturbance"),
+            "fail": Limit(0.01, "1", "a disturbance of 1 % of the samples is not rare"),
             "mean": Limit(0.005, "1", "a change of the mean by 0.5 % is not negligible"),
         },
         _spikes,

@@ -36,7 +36,7 @@ def _zero_drift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
         force = name == "friction_force"
         scale = subject.typical_friction if force else subject.typical_normal_force
         drift = (levels[-1] - levels[0]) / scale
-        text = f"the zero moved by {drift:+.2%} of the signal from the first to the last rest"
+        text = f"the zero drifted by {drift:+.2%} of the signal from the first to the last rest"
         results.append(Result(status_of(drift, limits), name, text, float(drift)))
     return results
 
@@ -52,7 +52,9 @@ def _normal_force_error(subject: RunSubject, limits: Mapping[str, float]) -> lis
             return moved
         raise Skip("the set-point of the normal force is not known")
     error = (means - zero) / target - 1
-    off = segment_results(subject, "normal_force", error, limits, "normal force off its set-point")
+    off = segment_results(
+        subject, "normal_force", error, limits, ("deviation of the normal force from its set-point")
+    )
     return moved if moved and off[0].status == "pass" else off
 
 
@@ -84,7 +86,7 @@ def _load_moves(
         return []
     text = (
         f"the load changes by {change:+.1%} along the run although it was set constant. If the "
-        "true load was constant, the friction coefficient is wrong by as much"
+        "true load was constant, the friction coefficient is wrong by the same percentage"
     )
     return [Result("suspect", "normal_force", text, change)]
 
@@ -113,9 +115,10 @@ def _steps_without_friction(
     change, own = (float(np.expm1(part[worst])) for part in (of_load, of_force))
     where = subject.segment_label(worst + 1)
     text = (
-        f"the load reading changes by {change:+.0%} to {where}, the friction force at the same "
-        f"speed by {own:+.1%} only. If the true load did not change, the friction coefficient is "
-        "wrong by as much as the reading"
+        f"the measured load changes by {change:+.0%} to {where}, but the friction force at the "
+        f"same speed by only {own:+.1%}. If the true load did not change, the friction "
+        "coefficient is "
+        "wrong by the same percentage"
     )
     return [Result("suspect", "normal_force", text, change, where=where, cure=_READING_STEPS)]
 
@@ -144,7 +147,9 @@ def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     if not np.isfinite(target).any():
         raise Skip("the set-point of the speed is not known")
     error = segments["sliding_speed"].values / np.where(target > 0, target, np.nan) - 1
-    return segment_results(subject, "sliding_velocity", error, limits, "speed off its set-point")
+    return segment_results(
+        subject, "sliding_velocity", error, limits, ("deviation of the speed from its set-point")
+    )
 
 
 def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -176,7 +181,7 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     if results and not np.isfinite(off).any():
         return results
     results_of_segments = segment_results(
-        subject, "sliding_velocity", off, limits, "d(position)/dt off the velocity"
+        subject, "sliding_velocity", off, limits, "deviation of d(position)/dt from the velocity"
     )
     return [*results, *results_of_segments]
 
@@ -215,7 +220,7 @@ def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
 
 
 _CURE_OF_STANDSTILL = (
-    "Look whether the stage stopped or the encoder slipped. If the position is wrong, leave its "
+    "Check whether the stage stopped or the encoder slipped. If the position is wrong, leave its "
     "column out in the dialect."
 )
 

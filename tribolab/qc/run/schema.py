@@ -90,15 +90,15 @@ def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
         missing.append(
             (
                 "no friction was recorded (none of " + ", ".join(_FRICTION) + ")",
-                "Give the log of the forces with this one if the instrument writes two; if the "
-                "file holds friction, let the dialect name its column.",
+                "If the instrument writes two logs, give both. If this file contains friction, "
+                "name its column in the dialect.",
             )
         )
     if not any(name in run for name in _SPEED) and "set_speed_m_s" not in run.attrs:
         text = "the speed is unknown (none of " + ", ".join(_SPEED) + ")"
-        cure = "Let the dialect say the speed: a column, [speed], or a value 'set_speed'."
+        cure = "State the speed in the dialect: a column, [speed], or a value 'set_speed'."
         if other := RunAttributes.from_attrs(run.attrs).companion_missing:
-            text += f": the companion log {other} is not there"
+            text += f": the companion log {other} does not exist"
             cure = f"Put {other} next to this file, or give both."
         missing.append((text, cure))
     return missing

@@ -72,9 +72,9 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     worst = int(np.argmax(np.where(open_, np.abs(change), -1.0)))
     where = subject.segment_label(worst)
     text = (
-        f"not decided in {open_.sum()} of {Count(open_.size):segment|segments}, too few "
-        "effective samples: "
-        f"{change[worst]:+.2%} along {where}, {samples[worst]:.2g} effective samples, "
+        f"not decided in {open_.sum()} of {Count(open_.size):segment|segments}, because there are "
+        f"too few effective samples: {change[worst]:+.2%} along {where}, {samples[worst]:.2g} "
+        "effective samples, "
         f"p = {chance[worst]:.2g}"
     )
     value, count = float(change[worst]), int(open_.sum())
@@ -179,8 +179,12 @@ SLIDING_CHECKS = (
         "and `min_samples` below, in `[qc] limits.segments`.",
         {
             **DETECTION,
-            "uncertain": Limit(0.3, "1", "a third of the value: surfaces cannot be distinguished"),
-            "known_to": Limit(0.005, "1", "a full film has 0.001 to 0.01: half the smaller value"),
+            "uncertain": Limit(
+                0.3, "1", ("if U95 is a third of µ, surfaces cannot be distinguished")
+            ),
+            "known_to": Limit(
+                0.005, "1", ("U95 that is always accepted: full-film friction is 0.001 to 0.01")
+            ),
             "lost_strokes": Limit(
                 0.05, "1", "fraction of the strokes; only the first and the last may be incomplete"
             ),

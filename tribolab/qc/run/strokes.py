@@ -69,16 +69,16 @@ def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
     if unlike := subject.about.strokes_unlike_s:
         often = subject.run.attrs["stroke_frequency_Hz"]
         text = (
-            f"friction reverses at the stated {often:.3g} Hz during a part of the run only; "
-            f"the other {duration(unlike)} count as rest"
+            f"friction reverses at the stated {often:.3g} Hz during only part of the run; the "
+            f"other {duration(unlike)} count as rest"
         )
         return [Result("fail", subject.required_friction_signal, text, cure=_CURE_OF_OTHER_STROKES)]
     if not unknown.any():
         known = Result("pass", "sliding_speed", "the speed of every segment is known")
         return _reciprocating(subject) or [known]
     text = (
-        f"the speed of {int(unknown.sum())} of {Count(unknown.size):segment|segments} is "
-        "unknown: start, stop and rest may be inside"
+        f"the speed of {int(unknown.sum())} of {Count(unknown.size):segment|segments} is unknown: "
+        "they may include start, stop and rest"
     )
     where, count = subject.segment_label(int(np.argmax(unknown))), int(unknown.sum())
     unknown_speed = Result("suspect", "sliding_speed", text, where=where, count=count)
@@ -93,8 +93,8 @@ def _reciprocating(subject: RunSubject) -> list[Result]:
     first, count = int(np.flatnonzero(turned)[0]), int((turned > 0).sum())
     text = (
         f"friction changes its sign {int(turned.max())} times while the direction of sliding is "
-        "unknown: this looks like reciprocating motion, and a mean over both directions is not "
-        "friction"
+        "unknown: this looks like reciprocating motion, and the mean over both directions is not "
+        "a friction coefficient"
     )
     if often := subject.run.attrs.get("strokes_not_seen_Hz"):
         text += f"; it does not reverse at the stated {often:.4g} Hz"
@@ -113,7 +113,7 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     elif np.isfinite(distance).any():
         share = distance / subject.contact_width
         shortest = int(np.nanargmin(share))
-        text = f"the shortest slide is {share[shortest]:.3g} of the contact width"
+        text = f"the shortest sliding distance is {share[shortest]:.3g} contact widths"
         status = "pass" if share[shortest] >= limits["contact_widths"] else "suspect"
         where, value = subject.segment_label(shortest), float(share[shortest])
         results.append(Result(status, "sliding_distance", text, value, "1", where))
@@ -122,7 +122,7 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     periods = subject.strong_periods(limits["strength"])
     if np.isfinite(periods).any():
         fewest = int(np.nanargmin(periods))
-        text = f"the fewest stick-slip periods in a segment are {periods[fewest]:.3g}"
+        text = f"one segment has only {periods[fewest]:.3g} stick-slip periods"
         status = "pass" if periods[fewest] >= limits["periods"] else "suspect"
         where, value = subject.segment_label(fewest), float(periods[fewest])
         results.append(Result(status, subject.friction_signal, text, value, "1", where))
@@ -147,7 +147,10 @@ def _unequal_periods(subject: RunSubject, limits: Mapping[str, float]) -> list[R
         f"the period of stick-slip is not determined in {Count(count):segment|segments}: in "
         f"{where}, {slip_remark[slip_remark.index(AT_ODDS) :]}"
     )
-    cure = "Slide further at this speed, or see in the strokes figure which of the two is right."
+    cure = (
+        "Slide further at this speed, or check in the figure of the strokes which of the two is "
+        "right."
+    )
     signal = subject.friction_signal or ""
     return [Result("suspect", signal, text, where=where, count=count, cure=cure)]
 
@@ -158,7 +161,7 @@ def _sampling(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         return [Result("pass", subject.required_friction_signal, "no stick-slip to resolve")]
     per_period = subject.segments["samples"].values / periods
     worst = int(np.nanargmin(per_period))
-    text = f"the fastest stick-slip has {per_period[worst]:.3g} samples in a period"
+    text = f"the fastest stick-slip has {per_period[worst]:.3g} samples per period"
     status = "pass" if per_period[worst] >= limits["samples"] else "suspect"
     where, value = subject.segment_label(worst), float(per_period[worst])
     return [Result(status, subject.required_friction_signal, text, value, "1", where)]

@@ -21,7 +21,7 @@ def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
 def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     signal = subject.required_friction_signal
     doubts = _doubts(subject, "rectified", signal)
-    return doubts or [Result("pass", signal, "nothing says that the signal lost its sign")]
+    return doubts or [Result("pass", signal, "no indication that the signal lost its sign")]
 
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:

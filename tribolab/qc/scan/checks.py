@@ -185,7 +185,7 @@ def _clipping(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     fewest, share = int(limits["points"]), limits["noisy"]
     noisy = 1.0 if subject.is_map else share
     flags = np.stack([profiles.flag_clipping(row, fewest, noisy) for row in subject.rows])
-    text = "{count:point lies|points lie} flat at the end of the range: cut off there"
+    text = "{count:point is|points are} clipped at the end of the range"
     return _flag_result(subject, flags, text, limits["fail"])
 
 
@@ -195,7 +195,7 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if not flat:
         return [Result("skipped", "height", "there are too few heights")]
     if kind == "none":
-        text = "the form was taken away before"
+        text = "the form was removed earlier"
         results.append(Result("skipped", "tilt", text))
     else:
         tilts = np.abs([float(profile.form_tilt) for profile in flat])
@@ -209,7 +209,7 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     for row, profile in zip(subject.filled_profiles, flat, strict=True):
         whole, rest = float(np.ptp(row.height.values)), float(np.ptp(profile.height.values))
         share.append(1.0 - min(rest / whole, 1.0) if whole > 0 else 0.0)
-    text = f"form ({kind}) takes {max(share):.2%} of the range"
+    text = f"form ({kind}) uses {max(share):.2%} of the range"
     return [*results, Result("pass", "height", text, max(share))]
 
 
@@ -233,9 +233,9 @@ def _level(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
 def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     radius = max(subject.attribute_values("tip_radius_m"), default=None)
     if radius is None:
-        return [Result("skipped", "height", "the file does not say the radius of the tip")]
+        return [Result("skipped", "height", "the file does not state the tip radius")]
     if not subject.spectra:
-        return [Result("skipped", "height", "no spectrum can be had of this scan")]
+        return [Result("skipped", "height", "no spectrum can be computed from this scan")]
     lost, reach = [], []
     for spectrum in subject.spectra:
         q, power = spectrum.wavenumber.values, spectrum.psd_1d.values
@@ -250,7 +250,7 @@ def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     worst = int(np.argmax(lost))
     value = lost[worst]
     if value == 0.0:
-        text = f"the tip of {radius * 1e6:.3g} um follows all that the pitch shows"
+        text = f"the tip of {radius * 1e6:.3g} um resolves all wavelengths that the pitch resolves"
         return [Result("pass", "height", text, 0.0)]
     status = "pass"
     if value > limits["suspect"]:
@@ -277,9 +277,12 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         text = f"{len(spectra)} scans agree within a factor {factor:.3g} at all wavenumbers"
         return [Result("pass", "height", text, factor)]
     status = "fail" if factor > limits["fail"] else "suspect"
-    text = f"{subject.profile_names[odd]} has a spectrum up to a factor {factor:.3g} off the others"
+    text = (
+        f"{subject.profile_names[odd]} has a spectrum that differs from the others by up to a "
+        f"factor {factor:.3g}"
+    )
     if len(spectra) == 2:
-        text = f"the two scans differ by up to a factor {factor:.3g} in their spectra"
+        text = f"the spectra of the two scans differ by up to a factor {factor:.3g}"
     return [Result(status, "height", text, factor, "1", subject.profile_names[odd])]
 
 
@@ -289,12 +292,12 @@ def _self_affine(subject: ScanSubject, limits: Mapping[str, float]) -> list[Resu
     if (why := subject.affinity_objection) == "":
         share, length = subject.wave
         if share < limits["told"]:
-            return [Result("pass", "height", "no wave and no lay stands out", 0.0)]
+            return [Result("pass", "height", "no periodic wave or lay is visible", 0.0)]
         text = (
             f"a wave of {1e6 * length:.3g} um repeats along the profile, with {100 * share:.2g} % "
         )
-        text += "of the mean square height: marks of a feed, chatter or vibration; the spectrum of "
-        text += "contact mechanics spreads it over its neighbours"
+        text += "of the mean square height: marks of a feed, chatter or vibration; in the "
+        text += "spectrum for contact mechanics it is spread over neighbouring wavelengths"
         return [Result("pass", "height", text, share, noted=True)]
     return [Result("suspect", "height", why, 1.0)]
 
@@ -357,7 +360,7 @@ _PROFILE_CHECKS = (
         "Use a sharper tip, or use the spectrum only up to the stated wavenumber.",
         {
             "suspect": Limit(0.5, "1", "half of the mean square slope is unreliable"),
-            "fail": Limit(0.95, "1", "the rest does not represent the surface's slopes"),
+            "fail": Limit(0.95, "1", "the remaining 5 % does not represent the surface's slopes"),
         },
         _tip,
     ),

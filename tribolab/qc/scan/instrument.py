@@ -28,13 +28,13 @@ def _spacing(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         return [Result("pass", "x", "the points are evenly spaced", unevenness)]
     if not resampled:
         text = (
-            f"the file's positions look uneven, by up to {unevenness:.2g} steps, as rounding of "
-            "their last digit explains: taken as even"
+            f"the positions in the file are uneven by up to {unevenness:.2g} steps, which "
+            "rounding of their last digit explains: treated as even"
         )
         return [Result("pass", "x", text, unevenness, noted=True)]
     text = (
-        f"the file's positions deviate from even ones by up to {unevenness:.2g} steps, more than "
-        "their rounding: heights were interpolated, which takes short waves away"
+        f"the positions in the file are uneven by up to {unevenness:.2g} steps, more than their "
+        "rounding: heights were interpolated, which removes short waves"
     )
     return [Result("suspect", "x", text, unevenness)]
 
@@ -57,7 +57,7 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         status = "pass" if value <= limits["suspect"] else "suspect"
         status = "fail" if value > limits["fail"] else status
         text = (
-            f"the file states a {name} of {stated[row] * size:.6g} {unit}, its positions say "
+            f"the file states a {name} of {stated[row] * size:.6g} {unit}, its positions give "
             f"{stated_ones[row] * size:.6g} {unit}"
         )
         results.append(Result(status, name, text, value))
@@ -90,7 +90,7 @@ def _implausible_size(subject: ScanSubject, limits: Mapping[str, float]) -> Resu
     length = float(subject.x[-1] - subject.x[0])
     largest = limits["map"] if subject.is_map else limits["profile"]
     if length > largest:
-        text = f"the scan is {length:.4g} m long by its units"
+        text = f"the scan is {length:.4g} m long according to its units"
         return Result("suspect", "length", text, length, "m")
     if impossible := impossible_heights(subject.scans):
         return Result("suspect", "height", impossible)
@@ -101,8 +101,8 @@ def _implausible_size(subject: ScanSubject, limits: Mapping[str, float]) -> Resu
     steepest = max(slopes)
     if steepest > limits["slope"]:
         text = (
-            f"the rms slope is {steepest:.3g}, {np.degrees(np.arctan(steepest)):.3g} deg: heights "
-            "and positions do not fit each other, so the unit of the heights or that of x is wrong"
+            f"the rms slope is {steepest:.3g}, {np.degrees(np.arctan(steepest)):.3g} deg: such "
+            "slopes are impossible, so the unit of the heights or that of x is wrong"
         )
         return Result("suspect", "pitch", text, steepest)
     doubt = doubt_about_heights(subject.scans)
@@ -153,7 +153,7 @@ def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             results.append(missing)
     sets = _own_results(subject)
     if not sets and not results:
-        return [Result("skipped", "Ra", "the instrument gives no results of its own")]
+        return [Result("skipped", "Ra", "the file contains no results of the instrument")]
     _, profiles = subject.form
     if subject.is_map or not profiles or subject.level:
         return results or [Result("skipped", "Ra", "there is no profile to compare with")]
@@ -172,11 +172,11 @@ def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             grave = grave or apart > limits["unknown_filter"]
             status = "fail" if grave else "suspect" if apart > limits["suspect"] else "pass"
             text = (
-                f"{source}: the instrument's {name} is {value * 1e6:.4g} um, ours "
+                f"{source}: the instrument's {name} is {value * 1e6:.4g} um, the computed one "
                 f"{closest * 1e6:.4g} um"
             )
             if np.isnan(cut):
-                text += "; the file does not say how the instrument filtered"
+                text += "; the file does not state the instrument's filter"
             results.append(Result(status, name, text, apart))
     return results
 
@@ -200,7 +200,7 @@ INSTRUMENT_CHECKS = (
         {
             "suspect": Limit(0.01, "1", "run-in and rounding cause less than 1 %"),
             "fail": Limit(0.1, "1", "an error of 10 % in the wavenumbers changes C by a third"),
-            "profile": Limit(1.0, "m", "drive units are a fifth as long"),
+            "profile": Limit(1.0, "m", "drive units reach at most a fifth of this"),
             "map": Limit(0.5, "m", "few areal instruments have this range"),
             "slope": Limit(20.0, "1", "87 deg: no gauge follows such flanks everywhere"),
         },

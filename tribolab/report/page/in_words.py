@@ -88,10 +88,10 @@ def oscillation_text(mode: Mapping[str, Any]) -> str:
     of = f"{count} of {many(mode['segments'], 'segment')}"
     if mode["verdict"] == "no stick-slip":
         verb = "looks" if count == 1 else "look"
-        return f"{of} alone {verb} like stick-slip, as noise does now and then."
+        return f"Only {of} {verb} like stick-slip, which noise can cause."
     text = f"Stick-slip in {of}."
     if mode["scaling_exponent"] is not None:
         power = error_text(mode["scaling_exponent"], NORMAL * mode["scaling_error"])
         scaling = str(mode["scaling"])
-        text += f" {scaling[:1].upper()}{scaling[1:]} (frequency goes with speed to the {power})."
+        text += f" {scaling[:1].upper()}{scaling[1:]} (frequency ∝ speed to the power {power})."
     return text
