@@ -314,6 +314,9 @@ def test_limits_and_names_are_the_user_s():
         check_scans(tilted, limits={"from": {}})
     with pytest.raises(ConfigError, match="no check is called"):
         check_scans(tilted, skip=["nothing"])
+    for value in (-0.1, float("nan")):
+        with pytest.raises(ConfigError, match="must not be negative"):
+            check_scans(tilted, limits={"form": {"tilt": value}})
     with pytest.raises(UnitError, match="tilt"):
         check_scans(tilted, limits={"form": {"tilt": "2 mm"}})
     with pytest.raises(AnalysisError, match="read_scans"):

@@ -102,7 +102,7 @@ def resolve_limits(
     Raises
     ------
     ConfigError
-        If a check or a limit is unknown; the message names the nearest.
+        If a check or a limit is unknown (the message names the nearest), or a limit is negative.
     UnitError
         If a value's unit does not fit.
     """
@@ -117,7 +117,11 @@ def resolve_limits(
                     f"[qc.{name}]: no limit is called '{shown(key)}'{nearest(key, known)}"
                 )
             unit = checks[name].limits[key].unit
-            resolved[name][key] = to_si(value, unit, name=f"[qc.{name}] {key}")
+            resolved[name][key] = limit = to_si(value, unit, name=f"[qc.{name}] {key}")
+            if not limit >= 0:
+                raise ConfigError(
+                    f"[qc.{name}] {key}: {value} is no limit: it must not be negative"
+                )
     return resolved
 
 
