@@ -6,7 +6,7 @@ import pytest
 
 from tribolab.records.parts import CurveOutcome, RunOutcome
 from tribolab.records.runs.run_record import RunRecord
-from tribolab.report.document.document import verdict
+from tribolab.report.document.document import state_of, verdict
 from tribolab.report.live.curves import curve_label
 from tribolab.report.live.points import RunPoint, of_curve, run_points
 from tribolab.report.live.starts import static_figures
@@ -241,3 +241,13 @@ def test_the_list_names_the_reason_that_sets_a_run_apart():
         "b": "zero reference (all runs)",
         "c": "repeats: 21 % above (and 1 more)",
     }
+
+
+def test_repeats_that_leave_their_mean_uncertain_make_a_campaign_suspect():
+    document = report([])
+    assert not [doubt for doubt in doubts(document) if "scatter" in doubt.text]
+    assert state_of({"status": "complete", "suspect": 0, "uncertain": 1}) == "SUSPECT"
+    for point in document["curves"][0]["points"]:
+        point["friction_coefficient_U95"] = 0.3 * point["friction_coefficient"]
+    (doubt,) = (doubt for doubt in doubts(document) if "scatter" in doubt.text)
+    assert doubt.text.endswith("uncertain: Sb-R, glycerol, 31 N (± 30 %)")

@@ -21,7 +21,7 @@ from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.surfaces.roughness_words import FORM, roughness_in_words
-from tribolab.records.verdict import verdict_of
+from tribolab.records.verdict import uncertain_mean, uncertain_words, verdict_of
 
 if TYPE_CHECKING:
     pass
@@ -34,8 +34,23 @@ _COUNTS = ("load", "runs", "segments")
 
 def verdict_line(outcome: Outcome) -> str:
     """Return the verdict in one word, and the numbers of usable runs and scans."""
-    word, counts = verdict_of(outcome.runs, outcome.surfaces)
+    uncertain = bool(_uncertain(outcome))
+    word, counts = verdict_of(outcome.runs, outcome.surfaces, uncertain=uncertain)
     return f"{word:7s} {counts}"
+
+
+def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
+    """Return the conditions whose repeats leave their mean uncertain: U95 over mean, and name."""
+    return [
+        (
+            share,
+            ", ".join(
+                filter(None, (curve.surface, curve.medium, load_text(curve.normal_force, "")))
+            ),
+        )
+        for curve in outcome.curves
+        if curve.done and (share := uncertain_mean(_points(curve, outcome))) is not None
+    ]
 
 
 def outcome_table(outcome: Outcome) -> Table:
@@ -168,6 +183,8 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         if len(names) > _HANDFUL:
             file = from_here(outcome.folder / "tables" / "checks.csv")
             lines.append(f"{what}: {len(names) - _HANDFUL} more, see {file}")
+    if uncertain := _uncertain(outcome):
+        lines.append(uncertain_words(uncertain))
     contradictions = outcome.campaign.contradicting_viscosities()
     lines += [f"medium {name}: {text}" for name, text in contradictions.items()]
     lines += _run_notices(done, outcome)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tribolab.core.wording import many
+from tribolab.core.wording import many, percent
 from tribolab.friction.segments.limits import RAMP_SHARE
 
 if TYPE_CHECKING:
@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 OK, SUSPECT, CHECK, FAIL = "OK", "SUSPECT", "CHECK", "FAIL"
 _BAD = ("fail", "error", "rejected")
+_MAX_NAMED = 2  # uncertain conditions
+_UNCERTAIN = 0.25  # U95 of a mean over the mean, above which only one digit is certain
 
 
 class Verdict(NamedTuple):
@@ -41,13 +43,44 @@ def is_ramp(run: Mapping[str, Any]) -> bool:
     return not run["segments_found"] and ramp > RAMP_SHARE.value * (run.get("duration_s") or 0.0)
 
 
-def verdict_of(runs: Sequence[RunOutcome], surfaces: Sequence[SurfaceOutcome]) -> Verdict:
+def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
+    """Return U95 over the mean of repeats, the median over speed, if it is large; else None.
+
+    Examples
+    --------
+    >>> point = {"runs": 3, "friction_coefficient": 0.3, "friction_coefficient_U95": 0.1}
+    >>> uncertain_mean([point]), uncertain_mean([point | {"runs": 1}])
+    (0.3333333333333333, None)
+    """
+    shares = sorted(
+        point["friction_coefficient_U95"] / abs(point["friction_coefficient"])
+        for point in points
+        if point["runs"] > 1 and point["friction_coefficient"]
+        if point["friction_coefficient_U95"] is not None
+    )
+    usual = shares[len(shares) // 2] if shares else 0.0
+    return usual if usual > _UNCERTAIN else None
+
+
+def uncertain_words(conditions: Sequence[tuple[float, str]]) -> str:
+    """Return a doubt about conditions, each with its result of `uncertain_mean` and its name."""
+    worst = sorted(conditions, reverse=True)
+    named = "; ".join(f"{name} (± {percent(share)})" for share, name in worst[:_MAX_NAMED])
+    more = f"; and {len(worst) - _MAX_NAMED} more" if len(worst) > _MAX_NAMED else ""
+    return f"repeats scatter so much that their mean is uncertain: {named}{more}"
+
+
+def verdict_of(
+    runs: Sequence[RunOutcome], surfaces: Sequence[SurfaceOutcome], *, uncertain: bool = False
+) -> Verdict:
     """Return the verdict on a campaign.
 
     Parameters
     ----------
     runs, surfaces
         Outcomes of the runs and surfaces.
+    uncertain
+        Whether the repeats of a condition leave their mean uncertain.
     """
     scanned = [surface for surface in surfaces if surface.files]
     usable = [run for run in runs if is_usable(run)]
@@ -64,8 +97,10 @@ def verdict_of(runs: Sequence[RunOutcome], surfaces: Sequence[SurfaceOutcome]) -
         word = FAIL
     elif bad:
         word = CHECK
-    elif any(run.quality == "suspect" for run in runs) or any(
-        "suspect" in surface.objections for surface in scanned
+    elif (
+        uncertain
+        or any(run.quality == "suspect" for run in runs)
+        or any("suspect" in surface.objections for surface in scanned)
     ):
         word = SUSPECT
     else:

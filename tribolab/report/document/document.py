@@ -19,7 +19,7 @@ from tribolab.core.wording import load_label, many, span
 from tribolab.friction.running_in.kinds import NONE
 from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
 from tribolab.records.parts import Row
-from tribolab.records.verdict import is_ramp
+from tribolab.records.verdict import is_ramp, uncertain_mean
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
 from tribolab.report.document.schema import (
     CampaignFile,
@@ -89,17 +89,19 @@ def report_head(
         Figures by section.
     """
     rejected = [surface.name for surface in outcome.surfaces if surface.quality in _BAD]
+    curves = tuple(curves)
+    uncertain = sum(uncertain_mean(curve.points) is not None for curve in curves)
     return ReportHead(
         made_at=dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         campaign=_campaign(outcome.campaign),
-        verdict=verdict(runs, rejected, len(outcome.lost_decisions))
+        verdict=verdict(runs, rejected, len(outcome.lost_decisions), uncertain)
         if outcome.campaign.run
         else _scan_verdict(outcome.surfaces, rejected),
         thresholds=THRESHOLDS,
         findings=tuple(ReportedFinding(*finding) for finding in findings),
         sources=tuple(SourceFile(*source) for source in outcome.sources),
         versions=versions(),
-        curves=tuple(curves),
+        curves=curves,
         surfaces=tuple(surfaces),
         sliding_mode=tuple(modes),
         models=tuple(models),
@@ -134,6 +136,7 @@ def verdict(
     runs: Sequence[Mapping[str, Any]],
     rejected_scans: Sequence[str] = (),
     lost_decisions: int = 0,
+    uncertain: int = 0,
 ) -> CampaignVerdict:
     """Return the result of the campaign in one sentence, with its numbers.
 
@@ -145,6 +148,8 @@ def verdict(
         Surfaces whose scans failed their checks.
     lost_decisions
         Number of decisions on runs that do not exist.
+    uncertain
+        Number of conditions whose repeats leave their mean uncertain.
     """
     done = [run for run in runs if run["status"] == "done"]
     failed = len(runs) - len(done)
@@ -197,6 +202,7 @@ def verdict(
         failed=failed,
         rejected=rejected,
         suspect=doubtful,
+        uncertain=uncertain,
         without_value=empty,
         rejected_by_hand=by_hand["rejected"],
         accepted_by_hand=by_hand["accepted"],
@@ -215,9 +221,11 @@ def state_of(verdict: Mapping[str, Any]) -> str:
     --------
     >>> state_of({"status": "complete", "suspect": 1}), state_of({"status": "incomplete"})
     ('SUSPECT', 'CHECK')
+    >>> state_of({"status": "complete", "suspect": 0, "uncertain": 0})
+    'OK'
     """
     if verdict["status"] == "complete":
-        return "SUSPECT" if verdict["suspect"] else "OK"
+        return "SUSPECT" if verdict["suspect"] or verdict["uncertain"] else "OK"
     return "CHECK" if verdict["status"] == "incomplete" else "FAIL"
 
 

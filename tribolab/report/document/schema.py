@@ -232,6 +232,9 @@ class CampaignVerdict:
     failed: Natural
     rejected: Natural
     suspect: Annotated[Natural, means("runs that are used although a check is suspect")]
+    uncertain: Annotated[
+        Natural, means("conditions whose repeats scatter so much that their mean is uncertain")
+    ]
     without_value: Annotated[Natural, means("sound runs without a friction coefficient")]
     rejected_by_hand: Annotated[Natural, means("runs rejected manually")]
     accepted_by_hand: Annotated[Natural, means("runs accepted manually despite their checks")]

@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from tribolab.core.wording import force_text, many, percent
+from tribolab.core.wording import force_text, many
 from tribolab.records.judgement import check_words, is_bad, why
+from tribolab.records.verdict import uncertain_mean, uncertain_words
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
 
@@ -18,7 +19,6 @@ _COMPARE = "Compare its trace with those of its repeats."
 _COMPARE_ALL = (
     "They are still included in the means. Compare their traces with those of their repeats."
 )
-_UNCERTAIN = 0.25  # U95 of a mean over the mean, above which only one digit is certain
 _UNCALIBRATED = "statistical only"
 
 
@@ -83,25 +83,15 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
 
 def _uncertain_means(curves: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
     """Yield the conditions whose repeats scatter so much that their mean is uncertain."""
-    wide = []
-    for curve in curves:
-        shares = sorted(
-            point["friction_coefficient_U95"] / abs(point["friction_coefficient"])
-            for point in curve["points"]
-            if point["runs"] > 1 and point["friction_coefficient"]
-            if point["friction_coefficient_U95"] is not None
-        )
-        if shares and (usual := shares[len(shares) // 2]) > _UNCERTAIN:
-            condition = system_name(curve["surface"], curve["medium"], curve["runs"])
-            load = force_text(curve["nominal_normal_force_N"])
-            wide.append((usual, f"{condition}, {load} (± {percent(usual)})"))
+    wide = [
+        (share, f"{system_name(curve['surface'], curve['medium'], curve['runs'])}, {load}")
+        for curve in curves
+        if (share := uncertain_mean(curve["points"])) is not None
+        and (load := force_text(curve["nominal_normal_force_N"]))
+    ]
     if wide:
-        named = "; ".join(text for _, text in sorted(wide, reverse=True)[:_MAX_NAMED])
-        more = f"; and {len(wide) - _MAX_NAMED} more" if len(wide) > _MAX_NAMED else ""
-        text = f"repeats scatter so much that their mean is uncertain: {named}{more}"
-        yield Doubt(
-            "suspect", "", text, "Look for a wrong run, or repeat the measurement.", "#runs"
-        )
+        cure = "Look for a wrong run, or repeat the measurement."
+        yield Doubt("suspect", "", uncertain_words(wide), cure, "#runs")
 
 
 def _notes(document: Mapping[str, Any]) -> Iterable[Doubt]:
