@@ -245,7 +245,7 @@ def test_a_measured_contact_area_gives_its_shear_stress_beside_the_theory_s(camp
     folder = campaign.parent / "camera"
     folder.mkdir()
     made = process(load_campaign(file), folder, previous=outcome.folder)
-    write_report(made)
+    write_report(made, figures="none")
     (model,) = json.loads((folder / "report.json").read_text())["models"]
     (before,) = json.loads((outcome.folder / "report.json").read_text())["models"]
     fit = model["fit"]

@@ -32,7 +32,7 @@ def folder(tmp_path_factory):
     for seed in range(3):
         (place / "raw" / f"{'abc'[seed]}.csv").write_text(table(seed)[0])
     (place / "campaign.toml").write_text(CAMPAIGN)
-    run_campaign(place)
+    run_campaign(place, figures="none")
     return place
 
 
@@ -54,7 +54,7 @@ def test_of_a_single_run_no_error_is_known_and_none_is_invented(folder, tmp_path
     (tmp_path / "raw").mkdir()
     shutil.copy(folder / "raw" / "a.csv", tmp_path / "raw")
     (tmp_path / "campaign.toml").write_text(CAMPAIGN)
-    run_campaign(tmp_path)
+    run_campaign(tmp_path, figures="none")
     curve = pd.read_csv(tmp_path / "results" / "tables" / "stribeck.csv")
     assert len(curve) == SPEED.size
     for end in ("sem", "u", "U95"):

@@ -58,7 +58,7 @@ def test_strips_are_too_low_at_a_light_load_beyond_their_limit():
     speeds = [1e-4, 3e-3, 1e-2, 1.0]
     full, strips = (
         stribeck_curve(
-            BALL, ball_psd(), 1.0, 0.3, STRESS, speeds, Solver(method=method)
+            BALL, ball_psd(), 1.0, 0.3, STRESS, speeds, Solver(cells=110, method=method)
         ).friction_coefficient.values
         for method in ("full", "strips")
     )

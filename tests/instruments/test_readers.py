@@ -126,7 +126,7 @@ def test_a_campaign_runs_its_own_python_only_if_it_is_trusted(campaign):
     assert done.exit_code == 2
     assert done.output.count("tribolab:") == 1 and "--trust" in done.output
     assert not marker.exists() and not (campaign.parent / "results").exists()
-    outcome = tl.run_campaign(campaign, jobs=1, trust=True)
+    outcome = tl.run_campaign(campaign, jobs=1, trust=True, figures="none")
     assert marker.exists()
     assert outcome.runs[0].done
 

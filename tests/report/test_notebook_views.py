@@ -156,7 +156,7 @@ def test_units_stand_beside_the_variables_in_what_jupyter_shows_first(tmp_path):
 
 
 def test_outcome_results_and_history_are_short_in_a_notebook(two_runs):
-    outcome = tl.run_campaign(two_runs, jobs=1)
+    outcome = tl.run_campaign(two_runs, jobs=1, figures="none")
     assert outcome._repr_html_().startswith(f"<p><b>{outcome.folder}: 2 runs, ")
     results = tl.read_results(outcome.folder)
     shown = results._repr_html_()

@@ -39,7 +39,7 @@ def results(shared_data, tmp_path_factory):
     for name, place in FOLDERS.items():
         (folder / "raw" / name).symlink_to(shared_data / place)
     (folder / "campaign.toml").write_text(CAMPAIGN)
-    return run_campaign(folder / "campaign.toml", jobs=1).folder
+    return run_campaign(folder / "campaign.toml", jobs=1, figures="none").folder
 
 
 @pytest.fixture(scope="module")

@@ -190,13 +190,15 @@ def test_report_is_the_same_in_processes_threads_and_here(tmp_path):
 
     def written(executor=None):
         calls = []
-        write_report(made, executor=executor, progress=lambda *call: calls.append(call))
+        options = {"progress": lambda *call: calls.append(call), "figures": "curves"}
+        write_report(made, executor=executor, **options)
         assert calls[-1] == ("page", 1, 1) and calls[-2][0] == "figures"
         lines = (made.folder / "report.json").read_text().splitlines()
         figures = {p.name: p.read_bytes() for p in (made.folder / "figures").iterdir()}
         return [line for line in lines if "made_at" not in line], figures
 
     here = written()
+    assert here[1]
     with ThreadPoolExecutor(3) as threads:
         assert written(threads) == here
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as processes:
