@@ -1,4 +1,4 @@
-"""Contact mechanics of a soft flat and a rigid rough cylinder, in plane strain.
+"""Contact mechanics of a soft flat and a rough cylinder or ball.
 
 Load is force per unit length [N/m]; pressure is nominal, averaged over the roughness.
 """

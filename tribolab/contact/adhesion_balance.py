@@ -1,4 +1,4 @@
-"""Energy balance of adhesion: Eqs. (11) and (12) solved with the contact area P(q).
+"""Energy balance of adhesion: solves Eqs. (11) and (12) with the contact area P(q).
 
 Differentiated, Eq. (11) can be integrated forward in wavenumber: the binding energy g(q) =
 gamma_eff P increases by the elastic energy of finer roughness, and P(q) decreases where the
@@ -25,11 +25,11 @@ from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import cumulative_at, spectrum_arrays
 from tribolab.units.conversion import positive, to_si
 
-# Share of the nodes that is spaced evenly in ln q; the others follow the growth of the stress.
+# Share of the nodes that is spaced evenly in ln q; the others follow the increase of stress.
 _EVEN_SHARE = 0.2
-_THINNING = 4  # factor by which nodes are thinned for the first search of the root
-_NEGLIGIBLE = 1e-11  # of the elastic energy, below which adhesion is negligible
-_CLOSE_GUESS = 2e-5  # relative error of a guess that needs no correction
+_THINNING = 4  # factor by which the number of nodes is reduced for the first root search
+_NEGLIGIBLE = 1e-11  # share of the elastic energy below which adhesion is neglected
+_CLOSE_GUESS = 2e-5  # relative error below which a guessed P(q) needs no correction
 _SMALLEST_AREA = 1e-15
 _LARGEST_RESIDUAL = 1e-8
 # Below this share of E* xi/2 the limit p -> 0 is used: the theory is linear in p there, and
@@ -44,19 +44,19 @@ class Balance(NamedTuple):
 
     area: np.ndarray  # P(q) [1] (k, n)
     binding: np.ndarray  # gamma_eff [J/m2] (k, n)
-    start: np.ndarray  # right-hand side of Eq. (11) at q0 before clipping at 0 [J/m2] (k)
+    start: np.ndarray  # right-hand side of Eq. (11) at q0, may be negative [J/m2] (k)
     residual: np.ndarray  # misfit of Eq. (11) at q1, relative to its terms (k)
     iterations: np.ndarray  # steps of the root search (k)
 
 
 @dataclass(frozen=True)
 class Interface:
-    """Rough surface on an elastic solid, prepared on nodes of wavenumber for Eq. (11)."""
+    """Rough surface on an elastic solid, with the terms of Eq. (11) at nodes in wavenumber."""
 
     wavenumber: np.ndarray  # [rad/m] (n)
     modulus: float  # E* [Pa]
     kappa: float
-    c_a: float  # factor of the detachment stress
+    c_a: float  # factor of the detachment stress, Eq. (12)
     slope: float  # xi of Eq. (12)
     diffusion: Diffusion
     elastic: np.ndarray  # E*/4 2 pi int q^2 C dq over each step [J/m2] (n - 1)
@@ -72,7 +72,7 @@ class Interface:
         kappa: float,
         c_a: float,
     ) -> Interface:
-        """Choose graded nodes of wavenumber and integrate the spectrum between them.
+        """Return an interface with nodes graded by the stress and the spectrum integrated between.
 
         Raises
         ------
@@ -83,7 +83,7 @@ class Interface:
         stress = cumulative_at(fine, q, spectrum, 3)
         if not stress[-1] > 0:
             raise AnalysisError("psd: C is zero everywhere, there is no roughness to adhere to")
-        # the range in which stress first grows is as important as the last decade: fourth root
+        # the fourth root gives the first increase of the stress as many nodes as the last decade
         even = np.log(fine / q[0]) / np.log(q[-1] / q[0])
         measure = _EVEN_SHARE * even + (1 - _EVEN_SHARE) * (stress / stress[-1]) ** 0.25
         node = np.exp(np.interp(np.linspace(0, 1, nodes), measure, np.log(fine)))
@@ -101,27 +101,27 @@ class Interface:
 
     @property
     def small_pressure(self) -> float:
-        """Pressure [Pa] used for the limit p -> 0: 1e-4 of the stress scale E* xi/2."""
+        """Pressure [Pa] for evaluating the limit p -> 0: 1e-4 of the stress scale E* xi/2."""
         return _SMALL_PRESSURE * float(np.sqrt(self.diffusion.time[-1]))
 
     @property
     def area_gain(self) -> float:
-        """Growth of the surface by its slopes, int (1 + xi^2 x)^(1/2) exp(-x) dx in Eq. (11)."""
+        """True over projected surface area, int (1 + xi^2 x)^(1/2) exp(-x) dx in Eq. (11)."""
         return float(1 + np.sqrt(np.pi) / 2 * self.slope * erfcx(1 / self.slope))
 
     def without_adhesion(self, pressure: np.ndarray, theory: AreaTheory = "persson") -> np.ndarray:
-        """Return P(q) of Eqs. (6) and (7), or of another theory, at the nodes (k, n)."""
+        """Return P(q) without adhesion at the nodes (k, n): Eqs. (6), (7) or another theory."""
         with np.errstate(divide="ignore", invalid="ignore"):
             area = area_of(pressure[:, None] / np.sqrt(2 * self.diffusion.time), theory)
         area[:, 0] = 1.0
         return area
 
     def reduced(self, area: np.ndarray) -> np.ndarray:
-        """Return S(q) P(q), the share of the elastic energy that is stored at a wavenumber."""
+        """Return S(q) P(q), the share of the elastic energy that is stored at each wavenumber."""
         return area * (self.kappa + (1 - self.kappa) * area * area)
 
     def march(self, start: np.ndarray, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return P and g = gamma_eff P integrated from q0 to q1.
+        """Return P and g = gamma_eff P, integrated from q0 to q1.
 
         Parameters
         ----------
@@ -143,8 +143,8 @@ class Interface:
         height = -np.sqrt(np.maximum(start, 0.0) * stiffness[0])
         for i in range(n - 1):
             before, stored = area[i], self.reduced(area[i])
-            # P at the next node is extrapolated by the parabola through ln P at the last three
-            # nodes, or constant, and corrected if the guess was inaccurate
+            # first guess of P at the next node: a parabola through ln P at the last three nodes, or
+            # constant at the start; a guess that is inaccurate is corrected
             guess = before
             if i > 0:
                 ratio = before / area[i - 1]
@@ -172,12 +172,12 @@ class Interface:
         return area, energy
 
     def stored(self, area: np.ndarray) -> np.ndarray:
-        """Return the elastic energy [J/m2] (k) of a contact area P(q) (k, n)."""
+        """Return the elastic energy [J/m2] (k) stored by a contact area P(q) (k, n)."""
         reduced = self.reduced(area)
         return np.asarray((self.elastic * (reduced[:, 1:] + reduced[:, :-1]) / 2).sum(axis=1))
 
     def thinned(self) -> Interface:
-        """Return the interface on a quarter of its nodes, including both ends."""
+        """Return the interface on every fourth node, including both ends."""
         kept = np.unique(np.append(np.arange(0, self.wavenumber.size - 1, _THINNING), -1))
         kept = np.append(kept[1:], self.wavenumber.size - 1)
         return replace(
@@ -188,7 +188,7 @@ class Interface:
         )
 
     def solve(self, pressure: np.ndarray, work: np.ndarray, iterations: int) -> Balance:
-        """Return the solution whose g at q0 fulfils Eq. (11) at q1, for each problem (k).
+        """Return the solution of Eq. (11) for each problem (k), by a search for g at q0.
 
         The root is bracketed by no adhesion at any wavenumber, and by the largest gamma_eff(1) that
         Eq. (11) allows. It is first searched for on a quarter of the nodes. `pressure` and `work`
@@ -208,7 +208,7 @@ class Interface:
 
             return at
 
-        # on an asinh scale tiny roots (small pressure) are found as fast as large ones
+        # an asinh scale finds tiny roots (small pressure) as fast as large ones
         low, high = np.full_like(unit, np.arcsinh(-1.0)), np.arcsinh(gained / unit)
         root = guided_root(misfit(self.march), misfit(self.thinned().march), low, high, iterations)
         binding = np.maximum(energy, 0.0) / area
@@ -219,7 +219,7 @@ class Interface:
 def rough_interface(
     psd: xr.Dataset, effective_modulus: str | float, kappa: float, c_a: float, nodes: int
 ) -> Interface:
-    """Return a rough interface from stated parameters.
+    """Return the interface of a spectrum and an elastic modulus, after checks of its parameters.
 
     Raises
     ------
@@ -240,7 +240,7 @@ def rough_interface(
 
 
 def work_value(work_of_adhesion: str | float) -> float:
-    """Return a work of adhesion [J/m2], zero or above.
+    """Return a work of adhesion [J/m2] from text or a number; an error if it is negative.
 
     Raises
     ------
@@ -260,7 +260,7 @@ def work_value(work_of_adhesion: str | float) -> float:
 def balance(
     surface: Interface, pressure: np.ndarray, work: np.ndarray, max_iterations: int
 ) -> Balance:
-    """Return the solution of Eq. (11) for each pressure and work of adhesion (k).
+    """Return the energy balance of Eq. (11) at each pressure and work of adhesion (k).
 
     Zero work of adhesion gives Eqs. (6) and (7), a NaN pressure gives NaN.
 
@@ -274,7 +274,7 @@ def balance(
     start, residual, iterations = np.zeros(k), np.zeros(k), np.zeros(k, dtype=int)
     unknown = np.isnan(pressure)
     area[unknown], binding[unknown], residual[unknown] = np.nan, np.nan, np.nan
-    # if adhesion is negligible compared with the elastic energy, use the solution without adhesion
+    # adhesion negligible compared with the elastic energy: use the solution without adhesion
     felt = work * surface.area_gain * area[:, -1] > _NEGLIGIBLE * surface.stored(area)
     todo = felt & ~unknown
     if todo.any():
@@ -293,7 +293,7 @@ def balance(
 
 
 def parameters(surface: Interface) -> dict[str, float | int]:
-    """Return the parameters of a result for its attributes."""
+    """Return the parameters of an adhesion calculation, as attributes of its result."""
     return {
         "effective_modulus_Pa": surface.modulus,
         "kappa": surface.kappa,

@@ -1,4 +1,4 @@
-"""Uncertainty of the adhesive contact area due to surface energies."""
+"""Uncertainty of the adhesive contact area due to uncertain surface energies."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def adhesion_uncertainty(
     nodes: int = 200,
     max_iterations: int = 100,
 ) -> xr.Dataset:
-    """Return the contact area with its spread due to uncertain surface energies and angles.
+    """Return the contact area with its spread due to uncertain surface energies and contact angles.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def adhesion_uncertainty(
     drawn = sample_work_of_adhesion(energies, samples, seed).clip(0)
     curve = np.union1d(works, np.linspace(works.min(), works.max(), 13))
 
-    # the limit p -> 0 is solved together with the requested pressures
+    # the limit p -> 0 is solved together with the given pressures
     pushed = np.append(np.maximum(flat, surface.small_pressure), surface.small_pressure)
     solved = balance(
         surface, np.tile(pushed, curve.size), np.repeat(curve, pushed.size), max_iterations

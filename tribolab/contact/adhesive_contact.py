@@ -41,7 +41,7 @@ def adhesion(
     nodes: int = _NODES,
     max_iterations: int = _ITERATIONS,
 ) -> xr.Dataset:
-    """Return contact area and effective work of adhesion of a rough adhesive contact.
+    """Return the contact area and effective work of adhesion of a rough adhesive contact.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def adhesion_by_works(
     works_of_adhesion: Sequence[float],
     area: AreaTheory = "persson",
 ) -> list[xr.Dataset]:
-    """Return adhesion results for several works of adhesion in one calculation.
+    """Return the adhesion results for several works of adhesion, computed together.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def _adhesions(
     area: AreaTheory,
     max_iterations: int,
 ) -> list[xr.Dataset]:
-    """Return the results for all pressures and works of adhesion, solved together."""
+    """Return the results for all pressures and works of adhesion, solved in one calculation."""
     flat = over.values.ravel()
     pushed = np.maximum(flat, surface.small_pressure)
     lanes = np.tile(pushed, len(works)), np.repeat(works, flat.size)
@@ -182,16 +182,16 @@ def _adhesion(
     area: AreaTheory,
     solved: Balance,
 ) -> xr.Dataset:
-    """Return the dataset of a solution: areas at the pressures, also by another theory."""
+    """Return the dataset of a solution: contact areas and works of adhesion at the pressures."""
     flat = over.values.ravel()
     pushed = np.maximum(flat, surface.small_pressure)
     free, touching = surface.without_adhesion(pushed, area), solved.area.copy()
     if area != "persson":
         touching = np.minimum(free * touching / surface.without_adhesion(pushed), 1.0)
-        # finer roughness cannot increase the contact
+        # roughness at larger wavenumbers cannot increase the contact area
         touching = np.maximum.accumulate(touching[:, ::-1], axis=1)[:, ::-1]
     without = free[:, -1]
-    share = flat / pushed  # 1, except at small pressures: area proportional to p
+    share = flat / pushed  # below 1 only at small pressures, where the area is proportional to p
     sticks = solved.start > 0
     with np.errstate(divide="ignore"):
         ratio = touching[:, -1] / without / np.where(sticks, share, 1.0)
@@ -302,7 +302,7 @@ def macroscopic_work_of_adhesion(
 
 
 def finite_pressures(pressure: str | AnyPressure) -> xr.DataArray:
-    """Return pressures as a DataArray; AnalysisError if infinite or negative."""
+    """Return pressures as a DataArray; an AnalysisError if one is infinite or negative."""
     over = labelled(pressure, "pressure")
     wrong = over.values[(over.values < 0) | np.isinf(over.values)]
     if wrong.size:
@@ -314,6 +314,6 @@ def finite_pressures(pressure: str | AnyPressure) -> xr.DataArray:
 
 
 def pressure_coords(over: xr.DataArray) -> dict[Hashable, Any]:
-    """Return the coordinates of the pressures, and the pressures."""
+    """Return the coordinates of a result over the given pressures."""
     kept = {name: values for name, values in over.coords.items() if name != "pressure"}
     return {**kept, "pressure": (over.dims, over.values)}

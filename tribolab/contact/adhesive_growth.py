@@ -1,4 +1,4 @@
-"""Growth of the contact area by adhesion, tabulated over pressure."""
+"""Increase of the contact area by adhesion, tabulated over pressure."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tribolab.contact.adhesive_contact import adhesion
 from tribolab.contact.line import WIDTH_LEVEL
 from tribolab.units.conversion import to_si
 
-_POINTS = 21  # pressures of the table
+_POINTS = 21  # number of pressures in the table
 
 
 class AdhesiveGrowth(NamedTuple):
-    """Ratio of contact area with and without adhesion over pressure.
+    """Ratio of the contact areas with and without adhesion, tabulated over pressure.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class AdhesiveGrowth(NamedTuple):
     work_of_adhesion: float
 
     def __call__(self, solid: np.ndarray, whole: np.ndarray, area: np.ndarray) -> np.ndarray:
-        """Return the area with adhesion for an area without.
+        """Return the contact area with adhesion from that without.
 
         Parameters
         ----------
@@ -48,7 +48,7 @@ class AdhesiveGrowth(NamedTuple):
         still vanishes with p_cont. Outside the nominal contact, where p is below 1e-3 of its
         maximum, adhesion is neglected.
         """
-        with np.errstate(divide="ignore"):  # a flooded outlet has tension, outside the contact
+        with np.errstate(divide="ignore"):  # tension in a flooded outlet, outside the contact
             pressure = np.log(np.maximum(whole, 0.0))
             growth = np.exp(np.interp(pressure, self.log_pressure, self.log_growth))
         nominal = whole > WIDTH_LEVEL * whole.max(axis=-1, keepdims=True)
@@ -58,7 +58,7 @@ class AdhesiveGrowth(NamedTuple):
 def adhesive_growth(
     psd: xr.Dataset, effective_modulus: float, work_of_adhesion: str | float, highest: float
 ) -> AdhesiveGrowth | None:
-    """Return the growth of the area by adhesion, tabulated up to a pressure.
+    """Return the ratio of contact areas with and without adhesion, tabulated up to a pressure.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Contact area of a rough surface against reduced pressure, in three theories.
+"""Contact area of a rough surface over reduced pressure, in three theories.
 
 In Persson's theory the stress diffuses as in complete contact. In partial contact a wave stores
 only a share S(P) of that elastic energy, and the variance of the stress grows more slowly: dV/dV_c
@@ -19,9 +19,9 @@ from scipy.special import erf
 from tribolab.core.errors import AnalysisError, nearest, shown
 
 AreaTheory = Literal["persson", "corrected", "numerics"]
-_GAMMA = 0.51  # S(0) of the corrected form
-_FIT = 0.5, 0.45  # S = 1 - a (1 - P)^b
-_FIRST, _LAST, _NODES = 6.0, 1e-6, 401  # range and number of z, with A/A0 = erf z
+_GAMMA = 0.51  # S(0) in the corrected theory
+_FIT = 0.5, 0.45  # a, b of the fitted theory, S = 1 - a (1 - P)^b
+_FIRST, _LAST, _NODES = 6.0, 1e-6, 401  # table of z, with A/A0 = erf z: limits and number of nodes
 _SHARES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "corrected": lambda area: _GAMMA + (1 - _GAMMA) * area**2,
     "numerics": lambda area: 1 - _FIT[0] * (1 - area) ** _FIT[1],
@@ -29,7 +29,7 @@ _SHARES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 
 
 def area_of(reduced: np.ndarray, area: AreaTheory) -> np.ndarray:
-    """Return A/A0 at reduced pressures y = p/(E* (pi int q^3 C dq)^(1/2)), not negative.
+    """Return A/A0 at reduced pressures y = p/(E* (pi int q^3 C dq)^(1/2)) of at least 0.
 
     Raises
     ------
@@ -66,13 +66,13 @@ def check_area(area: str) -> None:
 
 
 def alternative_area_theory(area: AreaTheory) -> AreaTheory:
-    """Return the theory for comparison: the corrected one, or Persson's for any other."""
+    """Return the theory to compare with: Persson's, or the corrected one if Persson's is used."""
     return "corrected" if area == "persson" else "persson"
 
 
 @functools.cache
 def _table(area: AreaTheory) -> tuple[PchipInterpolator, float]:
-    """Return ln z over ln y, and the lowest ln y; above y = 6, where contact is complete, z = y."""
+    """Return ln z over ln y, and the lowest ln y; above y = 6 contact is complete and z = y."""
     nodes = np.linspace(np.log(_FIRST), np.log(_LAST), _NODES)
     t, weight = np.polynomial.legendre.leggauss(6)
     half = (nodes[0] - nodes[1]) / 2

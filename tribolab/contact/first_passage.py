@@ -1,4 +1,4 @@
-"""First-passage probability of a diffusion to a moving absorbing boundary.
+"""Probability that a diffusing quantity first reaches a moving absorbing boundary.
 
 The stress at a point of a rough contact diffuses as finer roughness is included: "time" is its
 variance, and contact is lost where the stress falls to the boundary (zero without adhesion, else a
@@ -18,7 +18,7 @@ from tribolab.core.errors import AnalysisError
 
 @dataclass(frozen=True)
 class Diffusion:
-    """Time nodes of a diffusion and their Volterra weights.
+    """Diffusion on given nodes in time, with the weights of its Volterra equation.
 
     Notes
     -----
@@ -28,12 +28,12 @@ class Diffusion:
     """
 
     time: np.ndarray  # (n), starts with 0, never decreases
-    inverse_root: np.ndarray  # 1/sqrt(t_i - t_jm) of node i and step j < i, (n, n - 1)
-    runs: np.ndarray  # whether time passes in a step, (n - 1)
+    inverse_root: np.ndarray  # 1/sqrt(t_i - middle of step j) for node i, step j < i, (n, n - 1)
+    runs: np.ndarray  # whether time increases in a step (n - 1)
 
     @classmethod
     def over(cls, time: ArrayLike) -> Diffusion:
-        """Return a diffusion on given nodes in time.
+        """Return a diffusion with given nodes in time.
 
         Raises
         ------
@@ -60,7 +60,7 @@ class Diffusion:
         levels: np.ndarray,
         losses: np.ndarray,
     ) -> np.ndarray:
-        """Return the probability of reaching the boundary in one step, given all earlier steps.
+        """Return the probability of reaching the boundary during one step, given all earlier steps.
 
         Parameters
         ----------
@@ -90,7 +90,7 @@ class Diffusion:
         if step:
             weight = ndtr((level - levels[:step]) * self.inverse_root[step + 1, :step, None])
             below -= np.einsum("jk,jk->k", weight, losses[:step])
-        # rounding may make a tiny loss negative
+        # rounding can make a tiny probability negative
         return np.maximum(2 * below, 0.0)
 
 

@@ -1,4 +1,4 @@
-"""Distribution of the interfacial gap of a rough contact, and averages over it."""
+"""Probability distribution of the interfacial gap of a rough contact, and averages over it."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
 
 GapVariant = Literal["flow", "plain"]
-_PER_DECADE = 20  # magnifications per decade
-COMPLETE = 1e-2  # cut-offs of mean separation below which the contact is complete
-_FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
-_MAX_HEIGHTS = 8.0  # rms heights from the mean beyond which a Gaussian is negligible
-_NEGLIGIBLE = 1e-9  # share of the open area that is neglected
-_LUMP = 1e-4  # gaps below this share of the cut-off are combined in one cell
-_PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on each
+_PER_DECADE = 20  # number of magnifications per decade
+COMPLETE = 1e-2  # mean separation over cut-off below which the contact is complete
+_FRONT = 0.01  # share of the open area that opens first, where u1 = d(u A)/dA is nearly 0/0
+_MAX_HEIGHTS = 8.0  # distance from the mean, in rms heights, beyond which a Gaussian is negligible
+_NEGLIGIBLE = 1e-9  # share of the open area that may be neglected
+_LUMP = 1e-4  # upper end of the first cell of the gap, relative to the cut-off
+_PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points per panel
 
 
 class _Openings(NamedTuple):
-    """Area that opens at each magnification, with its mean gap and roughness."""
+    """Area that opens at each step of magnification, with its mean gap and rms roughness."""
 
     share: np.ndarray  # (pressure, bin)
     gap: np.ndarray  # u1 (pressure, bin) [m]
@@ -51,7 +51,7 @@ def gap_distribution(
     gamma: float = 0.45,
     cutoff: str | float = 1e-9,
 ) -> xr.Dataset:
-    """Return the distribution P(u) of the gap in the area without contact.
+    """Return the probability distribution P(u) of the gap in the area without contact.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def gap_distributions(
     cutoff: str | float = 1e-9,
     points: int = _POINTS,
 ) -> list[xr.Dataset]:
-    """Return several variants of `gap_distribution` with shared intermediate results.
+    """Return several variants of `gap_distribution`, with shared intermediate results.
 
     Half the `points` in each half decade of u suffice if the surfaces are within some ten
     roughnesses.
@@ -169,7 +169,7 @@ def _distribution(
     cutoff: float,
     points: int,
 ) -> xr.Dataset:
-    """Return the openings of each pressure distributed over a grid of gaps, for a given mean."""
+    """Return the gap density at each pressure on a grid of gaps, for a given mean separation."""
     if variant == "flow":
         height = openings.height * openings.gap / np.hypot(openings.height, openings.gap)
         openings = openings._replace(height=height)
@@ -200,7 +200,7 @@ def gap_averages(
     at_contact: float = 0.0,
     above_cutoff: bool = False,
 ) -> xr.DataArray:
-    """Return the average of a function of the gap, over open and closed area.
+    """Return the average of a function of the gap, over the area with and without contact.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def gap_averages(
 def _openings(
     stiffness: np.ndarray, q: np.ndarray, spectrum: np.ndarray, gamma: float
 ) -> tuple[_Openings, np.ndarray]:
-    """Return the area that opens between neighbouring magnifications, and the area in contact.
+    """Return the area that opens between successive magnifications, and the area in contact.
 
     On a panel of wavenumbers 1/q is averaged over the slope, from exact moments, so that a coarse
     grid of magnifications represents a noisy spectrum.
@@ -263,11 +263,11 @@ def _openings(
 def _nested_separation(
     stiffness: np.ndarray, slope2: np.ndarray, mean_inverse: np.ndarray, gamma: float
 ) -> np.ndarray:
-    """Return the mean separation at each magnification due to finer roughness; 1/q by panel."""
+    """Return the mean separation due to roughness finer than each magnification; 1/q by panel."""
     size = slope2.size
     row, panel = np.triu_indices(size - 1)
     start, stop = (np.sqrt(np.maximum(slope2[panel + i] - slope2[row], 0)) for i in (0, 1))
-    t = np.array([-1, 1]) / np.sqrt(3)  # two Gauss points on each panel of s
+    t = np.array([-1, 1]) / np.sqrt(3)  # two Gauss points per panel of the rms slope s
     slope = (start + stop) / 2 + (stop - start) / 2 * t[:, None]
     weight = (stop - start) * mean_inverse[panel]
     first = np.flatnonzero(np.diff(row, prepend=-1))
@@ -281,7 +281,7 @@ def _nested_separation(
 
 
 def _folded_mean(openings: _Openings) -> np.ndarray:
-    """Return the mean of |u| over all openings, with u Gaussian about u1."""
+    """Return the mean of |u| over all openings, for u normally distributed around its mean u1."""
     share, gap, height = openings
     with np.errstate(divide="ignore", invalid="ignore"):
         z = np.nan_to_num(gap / (np.sqrt(2) * height), posinf=np.inf)
@@ -290,7 +290,7 @@ def _folded_mean(openings: _Openings) -> np.ndarray:
 
 
 def _grid(openings: _Openings, cutoff: float, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return gaps and steps: one cell from 0 to `_LUMP` cut-offs, then panels of equal ratio.
+    """Return gaps and steps: one cell from 0 to `_LUMP` cut-offs, then equal steps in ln u.
 
     Waves much shorter than the scale of the gap open by less than an atom: the first cell contains
     their exact share, so that the grid need not resolve them.
@@ -309,7 +309,7 @@ def _grid(openings: _Openings, cutoff: float, points: int) -> tuple[np.ndarray, 
 
 
 def _bell(z: np.ndarray) -> np.ndarray:
-    """Return the Gaussian exp(-z^2/2), computed in place."""
+    """Return exp(-z^2/2), computed in place."""
     np.multiply(z, z, out=z)
     np.multiply(z, -0.5, out=z)
     return np.exp(z, out=z)
@@ -318,7 +318,7 @@ def _bell(z: np.ndarray) -> np.ndarray:
 def _density(
     at: np.ndarray, first: float, share: np.ndarray, gap: np.ndarray, height: np.ndarray
 ) -> np.ndarray:
-    """Return the sum of folded Gaussians at given gaps; the mean density in the first cell."""
+    """Return the density at given gaps, a sum of folded Gaussians; in the first cell its mean."""
     some = share > _NEGLIGIBLE * share.sum()
     share, gap, height = share[some], gap[some], np.maximum(height[some], 1e-3 * first)
     narrow, b = 1 / height, gap / height
@@ -331,7 +331,7 @@ def _density(
     unit = factor.max()
     factor, b = (factor / unit).astype(np.float32), b.astype(np.float32)
     a = np.multiply.outer(at[1:last].astype(np.float32), narrow.astype(np.float32))
-    near = np.flatnonzero(b < _MAX_HEIGHTS)  # Gaussians that extend across u = 0
+    near = np.flatnonzero(b < _MAX_HEIGHTS)  # Gaussians that extend to u < 0 are folded back
     back = _bell(a[:, near] + b[near]) @ factor[near]
     a -= b
     density[1:last] = unit * (_bell(a) @ factor + back)

@@ -1,4 +1,4 @@
-"""Geometry and elasticity of a cylinder or a ball on an elastic flat."""
+"""Geometry and elasticity of a cylinder or a ball pressed on an elastic flat."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.units.conversion import positive, to_si
 
 
 class Elasticity(ABC):
-    """Common parameters of line and point contacts: radius, layer and elastic bodies."""
+    """Parameters common to line and point contacts: radius, layer thickness, elastic constants."""
 
     radius: float
     youngs_modulus: float
@@ -26,7 +26,7 @@ class Elasticity(ABC):
     is_round: ClassVar[bool]
 
     def __post_init__(self) -> None:
-        """Convert text to SI values and raise an error for impossible ones."""
+        """Convert text to SI values, and raise an error for impossible ones."""
         for field in fields(self):  # type: ignore[arg-type]
             value = getattr(self, field.name)
             if field.name.endswith("poisson_ratio"):
@@ -39,7 +39,7 @@ class Elasticity(ABC):
 
     @property
     def effective_modulus(self) -> float:
-        """Plane-strain modulus E* [Pa] of both bodies, 1/E* = sum (1 - nu^2)/E."""
+        """Effective plane-strain modulus E* [Pa] of both bodies, 1/E* = sum (1 - nu^2)/E."""
         if self.counter_modulus == np.inf:
             return self.youngs_modulus / (1 - self.poisson_ratio**2)
         counter = (1 - self.counter_poisson_ratio**2) / self.counter_modulus
@@ -47,18 +47,18 @@ class Elasticity(ABC):
 
     @property
     def compliance_share(self) -> float:
-        """Share [1] of the flat in the compliance; 1 for a rigid counter body."""
+        """Share of the flat in the compliance 1/E* [1]; 1 for a rigid counter body."""
         return self.effective_modulus * (1 - self.poisson_ratio**2) / self.youngs_modulus
 
     def layer(self, length: float) -> Layer | None:
-        """Return the elastic layer in units of a length [m]; None on a half-space."""
+        """Return the elastic layer with lengths in units of `length` [m]; None for a half-space."""
         if self.thickness == np.inf:
             return None
         return Layer(self.thickness / length, self.poisson_ratio, self.compliance_share)
 
     @abstractmethod
     def force(self, load: float) -> float:
-        """Return the normal force [N] of a load in the unit of the theory."""
+        """Return the normal force [N] from a load: F_N/L [N/m] of a cylinder, F_N [N] of a ball."""
 
 
 @dataclass(frozen=True)
@@ -100,11 +100,11 @@ class LineContact(Elasticity):
     is_round: ClassVar[bool] = False
 
     def load(self, normal_force: str | float) -> float:
-        """Return the load F_N/L [N/m] of a normal force [N]."""
+        """Return the load F_N/L [N/m] of a normal force F_N [N]."""
         return to_si(normal_force, "N", name="normal_force") / self.length
 
     def force(self, load: float) -> float:
-        """Return the normal force [N] of a load F_N/L [N/m]."""
+        """Return the normal force F_N [N] of a load F_N/L [N/m]."""
         return load * self.length
 
 
@@ -136,11 +136,11 @@ class PointContact(Elasticity):
     is_round: ClassVar[bool] = True
 
     def load(self, normal_force: str | float) -> float:
-        """Return the load of the theory, which for a ball is the normal force F_N [N]."""
+        """Return the load of a ball, which is the normal force F_N [N] itself."""
         return to_si(normal_force, "N", name="normal_force")
 
     def force(self, load: float) -> float:
-        """Return the normal force [N], the load itself."""
+        """Return the normal force [N] of a ball, which is its load itself."""
         return load
 
 
@@ -153,7 +153,7 @@ def make_contact(geometry: str = "cylinder", **known: float) -> Contact:
 
 
 def plane_strain_ratio(value: str | float) -> float:
-    """Return Poisson's ratio as a float; 0.5 (rubber) is allowed.
+    """Return Poisson's ratio as a number for plane strain; 0.5 (rubber) is allowed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Roots of expensive functions, guided by similar cheap ones."""
+"""Root search for expensive functions, guided by similar cheap ones."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 
 Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
-_ROUGH, _FINE = 1e-4, 1e-11  # tolerances of zero: cheap functions, expensive functions
-_SLOPE_STEP = 1e-3  # of the bracket, over which the slope of the cheap function is computed
+_ROUGH, _FINE = 1e-4, 1e-11  # tolerances of the root: for the cheap and for the expensive function
+_SLOPE_STEP = 1e-3  # share of the bracket over which the cheap function's slope is computed
 _SECANTS = 12
 
 
 class Root(NamedTuple):
-    """Roots of functions (k), function values there, and number of steps."""
+    """Roots of several functions (k), the function values there, and the number of steps."""
 
     x: np.ndarray
     value: np.ndarray
@@ -25,7 +25,7 @@ class Root(NamedTuple):
 def guided_root(
     dear: Functions, cheap: Functions, low: np.ndarray, high: np.ndarray, iterations: int
 ) -> Root:
-    """Return the root of each function between two ends, guided by a cheap function.
+    """Return the root of each expensive function in an interval, guided by a cheap function.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def guided_root(
     """
     every = np.arange(low.size)
     start, *_ = _find_bracketed(cheap, low, high, every, iterations, _ROUGH)
-    outside = np.flatnonzero(np.isnan(start))  # the root of the cheap function is just outside
+    outside = np.flatnonzero(np.isnan(start))  # cheap root just outside: take the nearer end
     if outside.size:
         ends = np.array([low[outside], high[outside]])
         size = np.abs([cheap(end, outside) for end in ends])
@@ -88,7 +88,7 @@ def _find_bracketed(
     iterations: int,
     close: float,
 ) -> Root:
-    """Return roots between two ends by Chandrupatla's method."""
+    """Return the root of each function between two ends, by Chandrupatla's method."""
     # imported late: scipy takes long to load
     from scipy.optimize.elementwise import find_root
 
@@ -110,7 +110,7 @@ def _by_secants(
     high: np.ndarray,
     steps: int,
 ) -> Root:
-    """Return roots continued by secants from points with known slope."""
+    """Return roots found by the secant method, starting from points with known slopes."""
     x, low, high, slope = (part.copy() for part in (start, low, high, slope))
     value, taken = np.full_like(x, np.nan), np.zeros(x.size, dtype=int)
     todo = np.arange(x.size)

@@ -1,4 +1,4 @@
-"""Smooth line and point contacts: Hertz without adhesion, JKR with it."""
+"""Smooth line and point contacts: Hertz theory without adhesion, JKR theory with it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.units.conversion import to_si
 
 
 def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
-    """Return the half-width a of a Hertz line contact, or the radius a of a point contact.
+    """Return the half-width a of a Hertz line contact, or the contact radius a of a ball.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def hertz_max_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | 
 
 
 def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
-    """Return the nominal pressure [Pa]: mean ``F / (2 a L)``, or ``F/(pi a^2)`` for a ball.
+    """Return the mean pressure [Pa] of a Hertz contact: ``F/(2 a L)``, for a ball ``F/(pi a^2)``.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray |
     >>> hertz_mean_pressure([310.0, 2110.0], contact).round(-2)
     array([ 41700., 108800.])
     """
-    # F/(2a) in terms of a: zero load gives 0, not 0/0
+    # expressed by a, so that zero load gives 0 and not 0/0
     a = hertz_half_width(load, contact)
     if contact.thickness < np.inf:
         force = _loads(load, contact)
@@ -89,7 +89,7 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray |
 def _smooth(
     load: str | ArrayLike, contact: Contact
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
-    """Return the half-width [m] and maximum pressure [Pa], the latter only for a layer."""
+    """Return the half-width [m] and, for a layer only, the maximum pressure [Pa]."""
     force = _loads(load, contact)
     if np.any(force < 0):
         raise AnalysisError(
@@ -121,7 +121,7 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 
 
 def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndarray | float:
-    """Return the pressure [Pa] of a Hertz contact at x [m] (any dims) from its centre; 0 outside.
+    """Return the pressure [Pa] of a Hertz contact at a distance x [m] from its centre; 0 outside.
 
     On a layer it is a half ellipse over the width of that contact, with the same load.
     """
@@ -135,7 +135,7 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 
 
 def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
-    """Return the smallest load [N/m] ([N] for a ball) of an adhesive contact; negative is a pull.
+    """Return the least load [N/m] ([N] for a ball) of an adhesive contact; negative if a pull.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
 def jkr_half_width(
     load: str | ArrayLike, contact: Contact, work_of_adhesion: str | float
 ) -> np.ndarray | float:
-    """Return the half-width or radius a of a JKR contact, on the branch that approaches Hertz.
+    """Return the half-width or radius a of a JKR contact, on the branch that tends to Hertz theory.
 
     Parameters
     ----------
@@ -218,14 +218,14 @@ def jkr_half_width(
             f"{contact.load_unit}; got {np.min(force):.6g} {contact.load_unit}"
         )
     if contact.is_round:
-        pull = -2 * smallest  # 3 pi w R
+        pull = -2 * smallest  # magnitude of the pull-off force, 3 pi w R
         both = force + pull + np.sqrt(np.maximum(2 * pull * force + pull**2, 0.0))
         radius = np.cbrt(3 * contact.radius * both / (4 * contact.effective_modulus))[()]
         examine("jkr_half_width", half_width=radius / contact.radius)
         return radius
     phi = np.maximum(3 * force / -smallest, -3.0)
     b = np.maximum(phi, 0.0) ** 0.25 + 4 ** (1 / 3)
-    for _ in range(80):  # quadratic convergence, but linear with rate 1/2 at the smallest load
+    for _ in range(80):  # quadratic convergence, except at the pull-off load (linear, rate 1/2)
         steep = np.maximum(4 * (b**3 - 1), np.finfo(float).tiny)
         b, before = np.maximum(b - (b**4 - 4 * b - phi) / steep, 1.0), b
         if np.allclose(b, before, rtol=1e-15, atol=0):
@@ -236,12 +236,12 @@ def jkr_half_width(
 
 
 def _smallest_width(contact: Contact, w: float) -> float:
-    """Return the half-width at the smallest load, where Eq. (15) has its minimum."""
+    """Return the half-width at the smallest load, where the load of Eq. (15) has its minimum."""
     return (2 * contact.radius**2 * w / (np.pi * contact.effective_modulus)) ** (1 / 3)
 
 
 def _checked_work(contact: Contact, work_of_adhesion: str | float) -> float:
-    """Return the work of adhesion; AnalysisError on a layer, where JKR is not valid."""
+    """Return the work of adhesion; an AnalysisError for a layer, where JKR theory is not valid."""
     work = _work(work_of_adhesion)
     if work and contact.thickness < np.inf:
         raise AnalysisError("work_of_adhesion: JKR's theory is of a half-space, not of a layer")

@@ -1,4 +1,4 @@
-"""Elastic layer on a rigid base: compliance, and smooth contacts on it."""
+"""Elastic layer on a rigid base: its compliance, and smooth contacts on it."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-_HIGHEST = 24.0  # q d above which the layer equals a half-space to 1e-18
-_RIGID_BASE_DISTANCE = 12.0  # thicknesses beyond which the base is rigid for a line
+_HIGHEST = 24.0  # q d above which a layer and a half-space differ by less than 1e-18
+_RIGID_BASE_DISTANCE = 12.0  # range of the tabulated kernels, in thicknesses
 
 
 class Layer(NamedTuple):
-    """Layer bonded to a rigid base."""
+    """Elastic layer bonded to a rigid base."""
 
     thickness: float
     poisson_ratio: float
-    share: float = 1.0  # of the contact's compliance: less than 1 if the other body is elastic
+    share: float = 1.0  # share in the contact's compliance; below 1 if the other body is elastic
 
 
 def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
-    """Return the displacement of a bonded layer relative to a half-space at x = q d (any shape).
+    """Return W(q d), the compliance of a bonded layer over that of a half-space (any shape).
 
     Notes
     -----
@@ -34,7 +34,7 @@ def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
     .. [1] K. L. Johnson, Contact Mechanics (1985), Sec. 5.8.
     """
     k = 3 - 4 * poisson_ratio
-    half = np.exp(-2 * x)  # numerator and denominator are divided by exp(2x)/2
+    half = np.exp(-2 * x)  # both parts of the fraction are divided by exp(2x)/2
     top = k * -np.expm1(-4 * x) - 4 * x * half
     rest = 2 * x**2 + 5 - 12 * poisson_ratio + 8 * poisson_ratio**2
     return np.asarray(top / (k * (1 + half**2) + 2 * rest * half))
@@ -42,7 +42,7 @@ def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
 
 @functools.lru_cache(maxsize=8)
 def _nodes(poisson_ratio: float, share: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return wavenumbers times thickness, and 1 - W with the weight of a sum over them."""
+    """Return nodes k = q d, and the weights of a quadrature of (1 - W) over k."""
     t, weight = np.polynomial.legendre.leggauss(24)
     panel = np.linspace(0, _HIGHEST, 25)
     k = (panel[:-1, None] + (1 + t) / 2 * np.diff(panel)[:, None]).ravel()
@@ -52,8 +52,8 @@ def _nodes(poisson_ratio: float, share: float) -> tuple[np.ndarray, np.ndarray]:
 
 @functools.lru_cache(maxsize=8)
 def _line_layer(poisson_ratio: float, share: float) -> tuple[CubicSpline, CubicSpline, float]:
-    """Return I(s) = int (1 - W)(1 - cos ks)/k dk, its integral, and I - share ln s far away."""
-    # imported late for a fast start
+    """Return I(s) = int (1 - W)(1 - cos ks)/k dk, its integral, and the limit of I - share ln s."""
+    # imported late: scipy loads slowly
     from scipy.interpolate import CubicSpline
 
     k, weight = _nodes(poisson_ratio, share)
@@ -65,7 +65,7 @@ def _line_layer(poisson_ratio: float, share: float) -> tuple[CubicSpline, CubicS
 
 
 def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndarray:
-    """Return the reduction of a line's displacement by the rigid base, for E* = 1 (n, n).
+    """Return how much a rigid base reduces the displacement by a line load, for E* = 1 (n, n).
 
     ``(2/pi) int_cell I(|x_i - x'|/d) dx'``, to be added to the logarithmic kernel.
     """
@@ -85,8 +85,8 @@ def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndar
 
 @functools.lru_cache(maxsize=8)
 def _round_layer(poisson_ratio: float, share: float) -> CubicSpline:
-    """Return G(s) = int (1 - W) J0(ks) dk; share/s far away."""
-    # imported late for a fast start
+    """Return G(s) = int (1 - W) J0(ks) dk, which tends to share/s at large s."""
+    # imported late: scipy loads slowly
     from scipy.interpolate import CubicSpline
     from scipy.special import j0
 
@@ -99,7 +99,7 @@ def _round_layer(poisson_ratio: float, share: float) -> CubicSpline:
 def round_layer_kernel(
     radius: np.ndarray, faces: np.ndarray, sectors: int, layer: Layer
 ) -> np.ndarray:
-    """Return the reduction of the displacement of `kernel_around` by the base, for E* = 1."""
+    """Return how much a rigid base reduces the displacement of `kernel_around`, for E* = 1."""
     thickness = layer.thickness
     curve = _round_layer(layer.poisson_ratio, layer.share)
     t, weight = np.polynomial.legendre.leggauss(3)
@@ -124,7 +124,7 @@ def round_layer_kernel(
 
 
 def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[float, float]:
-    """Return load and maximum pressure of a smooth line contact on a layer, for R = E* = 1.
+    """Return the load and maximum pressure of a smooth line contact on a layer, for R = E* = 1.
 
     Notes
     -----
@@ -151,12 +151,12 @@ def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[f
     matrix[order, :order] = 1.0
     lack = np.append(-(half_width**2) * t**2 / 2, 0.0)
     b = np.linalg.solve(matrix, lack)[:order]
-    # sum b_n (T_2n - 1)/sqrt(1 - t^2) in the middle
+    # pressure in the middle of the contact: sum b_n (T_2n - 1)/sqrt(1 - t^2) at t = 0
     return float(np.pi * half_width * b[0]), float(b @ (-1.0) ** np.arange(order))
 
 
 def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[float, float]:
-    """Return load and maximum pressure of a smooth round contact on a layer, for R = E* = 1.
+    """Return the load and maximum pressure of a smooth round contact on a layer, for R = E* = 1.
 
     Notes
     -----
@@ -176,14 +176,14 @@ def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[floa
     # phi is even in t: p(0) = -int phi'/t dt, with the polynomial through phi in t^2
     poly = np.polynomial.Chebyshev.fit(t**2, phi, 16)
     inner = t[:-1]
-    steep = 2 * poly.deriv()(inner**2)  # phi'/t
+    steep = 2 * poly.deriv()(inner**2)  # phi'(t)/t
     return float(2 * np.pi * share @ phi), float(-share[:-1] @ steep)
 
 
 def layer_contact(
     load: float, layer: Layer, round_contact: bool, widest: float
 ) -> tuple[float, float]:
-    """Return half-width and maximum pressure of a smooth contact on a layer, for R = E* = 1.
+    """Return the half-width and maximum pressure of a smooth contact on a layer, for R = E* = 1.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def layer_contact(
     widest
         Half-width on a half-space, over R.
     """
-    # imported late for a fast start
+    # imported late: scipy loads slowly
     from scipy.optimize import brentq
 
     of = round_layer_load if round_contact else line_layer_load

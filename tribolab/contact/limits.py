@@ -1,4 +1,4 @@
-"""Validity of contact theory for a line contact, see `tribolab.core.validity`."""
+"""Validity limits of contact theory for line and point contacts, see `tribolab.core.validity`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribolab.contact.separation import Separation
 from tribolab.core.validity import LIMITS, examine, together
 from tribolab.surface.moments import rms_slope
 
-_OF_OILS = 2e-8  # 1/Pa, d ln(viscosity)/dp; a third of it for glycerol
+_OF_OILS = 2e-8  # 1/Pa, d ln(viscosity)/dp of mineral oils; three times that of glycerol
 
 
 def line_limits(
@@ -24,7 +24,7 @@ def line_limits(
     speed: ArrayLike = (),
     film: ArrayLike = (),
 ) -> dict[str, str]:
-    """Return the attributes ``validity`` and ``validity_reasons`` of a contact.
+    """Return the attributes ``validity`` and ``validity_reasons`` for a contact.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Dry contact of a rough cylinder with a flat at rest: pressure and separation."""
+"""Dry contact of a rough cylinder at rest on a flat: pressure and separation."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from tribolab.core.errors import AnalysisError, Cure
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
-# The paper does not define its contact width; this level of pressure, relative to the maximum,
+# The paper does not define the contact width: this pressure, relative to the maximum,
 # reproduces both printed widths.
 WIDTH_LEVEL = 1e-3
 _STEPS = 100
-_CONVERGED = 1e-10  # change of the last step, relative to the maximum pressure
-_FLAT = 1e-6  # of h_rms: mean separation of complete contact
+_CONVERGED = 1e-10  # change in the last step over the maximum pressure
+_FLAT = 1e-6  # mean separation over h_rms at which contact is taken as complete
 
 
 @over_dims(psd=("wavenumber",))
@@ -37,7 +37,7 @@ def rough_line_contact(
     points: int = 401,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Return pressure and mean separation across a dry, rough line contact at rest.
+    """Return the pressure and mean separation across a dry, rough line contact at rest.
 
     Parameters
     ----------
@@ -126,17 +126,17 @@ def rough_line_contact(
 
 
 class LineProfile(NamedTuple):
-    """Pressure and separation over the cells of a dry line contact, with convergence data."""
+    """Pressure and mean separation in the cells of a dry line contact, with convergence data."""
 
-    x: np.ndarray  # [m] (n)
+    x: np.ndarray  # centres of the cells [m] (n)
     pressure: np.ndarray  # [Pa] (n)
-    separation: np.ndarray  # [m] (n)
+    separation: np.ndarray  # mean separation [m] (n)
     steps: int
-    residual: float  # of p - p(u), in units of the maximum pressure
+    residual: float  # largest error of p = p(u), in units of the maximum pressure
 
 
 def solve_line(force: float, contact: LineContact, table: Separation, points: int) -> LineProfile:
-    """Return the solution of `rough_line_contact` at a load [N/m] on a table of the separation."""
+    """Return pressure and separation at a load [N/m], with a table of the contact pressure."""
     x = _cells(force, contact, table.decay_length, points)
     width = np.full(points, x[1] - x[0])
     kernel = line_kernel(x, width, contact.effective_modulus)
@@ -149,7 +149,7 @@ def solve_line(force: float, contact: LineContact, table: Separation, points: in
 
 
 def line_kernel(x: np.ndarray, width: np.ndarray, effective_modulus: float) -> np.ndarray:
-    """Return the displacement [m/Pa] at x_i by unit pressure in cell j, log kernel of Eq. (9).
+    """Return the displacement [m/Pa] at x_i by unit pressure in cell j, the log kernel of Eq. (9).
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def line_kernel(x: np.ndarray, width: np.ndarray, effective_modulus: float) -> n
 
 
 def contact_width(x: np.ndarray, pressure: np.ndarray, level: float = WIDTH_LEVEL) -> float:
-    """Return the distance [m] between the outermost points with `level` of the maximum pressure.
+    """Return the width [m] between the outermost points at `level` times the maximum pressure.
 
     ln p is interpolated linearly between cells.
     """
@@ -196,7 +196,7 @@ def contact_width(x: np.ndarray, pressure: np.ndarray, level: float = WIDTH_LEVE
 
 
 def _cells(force: float, contact: LineContact, decay_length: float, points: int) -> np.ndarray:
-    """Return the centres of equal cells, out to a pressure of 1e-12 of its maximum.
+    """Return the centres of equal cells, up to where the pressure is 1e-12 of its maximum.
 
     Outside the Hertz contact u increases faster than (x^2 - a^2)/2R, and p falls as exp(-u/u0): x^2
     = a^2 + 2 R u0 ln(1e12) is sufficient.
@@ -215,7 +215,7 @@ def solve_dry(
     table: Separation,
     kernel: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """Return p, u, steps and residual of p = p_cont(c + gap + K p) for a given load.
+    """Return p, u, steps and residual of p = p_cont(c + gap + K p), solved for a given load.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def solve_dry(
         target, slope = table.pressure_and_slope(c + shape)
         factor = lu_factor(np.eye(p.size) - slope[:, None] * kernel)
         both = lu_solve(factor, np.stack([target - p, slope], axis=1))
-        # the load is fixed: the sum of a + b dc over the cells equals its present deficit
+        # Newton's equation for c: sum of a + b dc over the cells makes up the missing load
         dc = ((force - weight @ p) - weight @ both[:, 0]) / (weight @ both[:, 1])
         dp = both[:, 0] + both[:, 1] * dc
         t = _line_search(p, c + shape, dp, dc + kernel @ dp, weight, table)
@@ -262,7 +262,7 @@ def _line_search(
     weight: np.ndarray,
     table: Separation,
 ) -> float:
-    """Return the step length, at most 1, along a Newton step to the energy minimum.
+    """Return the length, at most 1, of the Newton step that brings the energy nearest its minimum.
 
     The energy's derivative along the step is ``sum (p - p_cont(u)) du``; it is negative at the
     start and increases monotonically, so a few secant steps within a bracket find its zero.

@@ -101,7 +101,7 @@ def apparent_contact_area_ratio(
     effective_modulus: str | float,
     area: AreaTheory = "persson",
 ) -> xr.DataArray:
-    """Return the apparent contact area ratio P(q) = A(q)/A0 at every wavenumber.
+    """Return the apparent contact area ratio P(q) = A(q)/A0 at each wavenumber of the spectrum.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def mean_separation(
     effective_modulus: str | float,
     gamma: float = 0.45,
 ) -> Pressure:
-    """Return the mean interfacial separation of a rough contact, by quadrature over the spectrum.
+    """Return the mean interfacial separation of a rough contact at given pressures.
 
     Parameters
     ----------
@@ -193,19 +193,19 @@ def mean_separation(
     values = pressure_values(pressure)
     flat = values.ravel() / (ROOT_PI * modulus)
     separation = np.empty_like(flat)
-    for part in range(0, flat.size, 128):  # limits the memory for pressures times wavenumbers
+    for part in range(0, flat.size, 128):  # in blocks, to limit memory
         piece = flat[part : part + 128, None]
         separation[part : part + 128] = tail(piece / slope, gamma) @ weight
     return _add_validity(like(separation.reshape(values.shape), pressure, "separation"), valid)
 
 
 def _add_validity(result: Pressure, valid: dict[str, str]) -> Pressure:
-    """Return a result with the validity attributes, if it has attributes."""
+    """Return a DataArray with the validity attributes added; a plain array is unchanged."""
     return result.assign_attrs(valid) if isinstance(result, xr.DataArray) else result
 
 
 def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return nodes s and weights w for integrals ``2 int (ds/q) f(s)`` over a spectrum.
+    """Return slopes s and weights w for integrals ``2 int (ds/q) f(s)`` over a spectrum.
 
     Gauss-Legendre in ln q on every bin. In the first bin s starts from 0 like a square root, which
     the substitution ln q = ln q0 + L t^2 removes.
@@ -238,7 +238,7 @@ def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, n
 
 
 def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return q and C as `spectrum_arrays`, without zeros at the ends except next to roughness.
+    """Return q and C of a spectrum without zeros at its ends, except those next to roughness.
 
     Moments do not change, because C is linear in the bin next to a zero; this avoids 0/0 in ranges
     without roughness, e.g. for the opening gap.
@@ -252,7 +252,7 @@ def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def tail(y: np.ndarray, gamma: float) -> np.ndarray:
-    """Return F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2), to 1e-8."""
+    """Return F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2), within 1e-8."""
     spline, lowest, highest = _tail_table(float(gamma))
     with np.errstate(divide="ignore"):
         x = np.log(y)
@@ -262,7 +262,7 @@ def tail(y: np.ndarray, gamma: float) -> np.ndarray:
 
 
 def coarse_tail(log_y: np.ndarray, gamma: float) -> np.ndarray:
-    """Return the function F of `tail` over ln y, to 1e-5 for y < 1; faster for sums over many y."""
+    """Return F of `tail` at ln y, accurate to 1e-5 for y < 1; faster than `tail` in long sums."""
     values, steps, lowest, per_unit = _coarse_table(float(gamma))
     place = np.clip((log_y - lowest) * per_unit, 0, values.size - 1)
     cell = place.astype(np.intp)
@@ -276,7 +276,7 @@ def tail_slope(y: np.ndarray, gamma: float) -> np.ndarray:
 
 @functools.lru_cache(maxsize=8)
 def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
-    """Return ln F over ln y with exact slopes; gamma's part is an exponential integral."""
+    """Return a table of ln F over ln y with exact slopes; exponential integral for gamma's term."""
     if not 0 < gamma <= 1:
         raise AnalysisError(f"gamma: a value above 0 and at most 1 is wanted; got {gamma:g}")
     x = np.linspace(-12.0, np.log(26.0), 1601)
@@ -284,7 +284,7 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
     half = (x[1] - x[0]) / 2
     y = np.exp(x[:-1, None] + half * (1 + t))
     pieces = half * (erf(y) ** 2 * np.exp(-y * y)) @ weight
-    last = exp1(np.exp(2 * x[-1])) / 2  # erf is 1 beyond this point
+    last = exp1(np.exp(2 * x[-1])) / 2  # erf = 1 from here on
     both = np.cumsum(np.concatenate([[last], pieces[::-1]]))[::-1]
     value = gamma / 2 * exp1(np.exp(2 * x)) + 3 * (1 - gamma) * both
     slope = -tail_slope(np.exp(x), gamma) / value
@@ -293,20 +293,20 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
 
 @functools.lru_cache(maxsize=8)
 def _coarse_table(gamma: float) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Return F on equal steps of ln y and its differences: constant below, 0 beyond the last."""
+    """Return F and its differences at equal steps of ln y; constant below, 0 above the table."""
     x, step = np.linspace(-25.0, np.log(26.0), 14001, retstep=True)
     values = np.append(tail(np.exp(x[:-1]), gamma), 0.0)
     return values, np.diff(values, append=0.0), float(x[0]), float(1 / step)
 
 
 def _area(pressure: np.ndarray, stiffness: np.ndarray | float, area: AreaTheory) -> np.ndarray:
-    """Return the area at p/stiffness; stiffness 0 is a smooth surface, in contact if p > 0."""
+    """Return A/A0 at p/stiffness; a smooth surface (stiffness 0) is in contact if p > 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(pressure == 0, 0.0, area_of(pressure / stiffness, area))
 
 
 def pressure_values(pressure: str | Pressure) -> np.ndarray:
-    """Return pressures [Pa] as an array of floats; NaN stays NaN.
+    """Return pressures [Pa] as an array of floats; NaN remains NaN.
 
     Raises
     ------

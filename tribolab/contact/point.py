@@ -1,4 +1,4 @@
-"""Dry contact of a rough ball with a flat at rest: pressure and separation over radius."""
+"""Dry contact of a rough ball at rest on a flat: pressure and separation over the radius."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from tribolab.contact.separation import Separation, separation_table
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
-_SECTORS = 12  # sectors of a mesh for pressure that depends only on the radius
+_SECTORS = 12  # number of sectors of the mesh for a pressure that depends on the radius only
 
 
 def across_the_middle(profile: xr.Dataset) -> xr.Dataset:
-    """Return a radial profile as a profile over x [m] through the centre.
+    """Return a radial profile as a profile over x [m] along a diameter.
 
     ``contact_width`` [m] is the diameter at which pressure is 1e-3 of its maximum.
     """
@@ -41,14 +41,14 @@ def across_the_middle(profile: xr.Dataset) -> xr.Dataset:
 
 
 class RoundProfile(NamedTuple):
-    """Pressure and separation over the rings of a dry point contact, with convergence data."""
+    """Pressure and mean separation in the rings of a dry point contact, with convergence data."""
 
-    radius: np.ndarray  # [m] (n)
+    radius: np.ndarray  # centres of the rings [m] (n)
     area: np.ndarray  # of the rings [m2] (n)
     pressure: np.ndarray  # [Pa] (n)
     separation: np.ndarray  # [m] (n)
     steps: int
-    residual: float  # of p - p(u), in units of the maximum pressure
+    residual: float  # largest error of p = p(u), in units of the maximum pressure
 
 
 @over_dims(psd=("wavenumber",))
@@ -60,7 +60,7 @@ def rough_point_contact(
     rings: int = 120,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Return pressure and mean separation over the radius of a dry, rough point contact.
+    """Return pressure and mean separation over the radius of a dry, rough point contact at rest.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def rough_point_contact(
     table = separation_table(psd, contact.effective_modulus, gamma)
     a = float(hertz_half_width(force, contact))
     edge = (table.decay_length * contact.radius / (1.9 * a**2 / 2)) ** (2 / 3)
-    # the pressure falls as exp(-u/u0) outside, as for the line
+    # outside, the pressure falls as exp(-u/u0), as in a line contact
     end = np.sqrt(1 + 2 * contact.radius * table.decay_length * np.log(1e12) / a**2)
     layer = contact.layer(a)
     mesh = polar_mesh(rings, _SECTORS, min(float(edge), 0.5), 1.1 * float(end), 1.0, layer)
@@ -128,7 +128,7 @@ def rough_point_contact(
 def solve_rings(
     force: float, contact: PointContact, table: Separation, mesh: PolarMesh, length: float
 ) -> RoundProfile:
-    """Return the solution of `rough_point_contact` on a mesh in units of a length [m]."""
+    """Return the solution of `rough_point_contact` on a mesh with the unit `length` [m]."""
     radius = mesh.radius * length
     area = np.pi * np.diff(mesh.faces**2) * length**2
     kernel = mesh.rings * (length / contact.effective_modulus)

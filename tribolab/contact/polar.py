@@ -1,4 +1,4 @@
-"""Rings and sectors around a round contact, and their elastic displacement."""
+"""Mesh of rings and sectors for a round contact, with its elastic displacement."""
 
 from __future__ import annotations
 
@@ -10,32 +10,32 @@ from scipy.interpolate import PchipInterpolator
 
 from tribolab.contact.layer import Layer, round_layer_kernel
 
-_CHORDS = 4  # chords that approximate the arc of a cell
-# Density of rings: at the contact's edge, inside it, and evenly in ln r far from it
+_CHORDS = 4  # number of chords that replace the arc of a cell
+# Density of rings: at the contact's edge, inside it, and far away (equal steps of ln r)
 _EDGE, _INSIDE, _FAR = 2.5, 6.0, 2.0
 
 
 class PolarMesh(NamedTuple):
-    """Rings and equal sectors of the half plane y > 0, in units of the contact's radius.
+    """Rings and equal sectors in the half plane y > 0, in units of the contact radius.
 
     The index of a cell is ring * sectors + sector; the flow is towards +x, angle 0.
     """
 
     faces: np.ndarray  # boundaries of the rings (rings + 1)
-    radius: np.ndarray  # centres of the cells (rings)
+    radius: np.ndarray  # middle radius of each ring (rings)
     sectors: int
-    area: np.ndarray  # of the cells, half plane (rings * sectors)
-    x: np.ndarray  # centres of the cells (rings * sectors)
+    area: np.ndarray  # area of each cell (rings * sectors)
+    x: np.ndarray  # x at the centres of the cells (rings * sectors)
     squared: np.ndarray  # r^2 at the centres (rings * sectors)
-    kernel: np.ndarray  # displacement by unit pressure, for E* = 1 (cells, cells)
-    rings: np.ndarray  # the same for constant pressure along a ring (rings, rings)
+    kernel: np.ndarray  # displacement of a cell by unit pressure in another, E* = 1 (cells, cells)
+    rings: np.ndarray  # displacement of rings by unit pressure in a ring (rings, rings)
 
 
 @functools.lru_cache(maxsize=6)
 def polar_mesh(
     rings: int, sectors: int, edge: float, end: float, size: float = 1.0, layer: Layer | None = None
 ) -> PolarMesh:
-    """Return rings, refined at the edge of the contact, with their elasticity.
+    """Return rings refined at the edge of the contact, and their elastic displacements.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def polar_mesh(
     angle = np.pi / sectors
     around = kernel_around(radius, faces, sectors, layer)
     j, m = np.arange(sectors)[:, None], np.arange(sectors)
-    # a sector and its mirror image in the other half plane
+    # add the displacement by the mirror image of a sector in the other half plane
     folded = (
         around[:, :, np.abs(j - m)] + around[:, :, np.minimum(j + m + 1, 2 * sectors - j - m - 1)]
     )
@@ -87,7 +87,7 @@ def polar_mesh(
 def kernel_around(
     radius: np.ndarray, faces: np.ndarray, sectors: int, layer: Layer | None = None
 ) -> np.ndarray:
-    """Return the displacement at (radius, 0) by unit pressure on surrounding cells, for E* = 1.
+    """Return the displacement at (radius, 0) by unit pressure in each cell around, for E* = 1.
 
     Returns
     -------

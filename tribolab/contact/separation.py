@@ -1,4 +1,4 @@
-"""Contact pressure against mean separation, tabulated for solvers."""
+"""Contact pressure as a function of mean separation, tabulated for solvers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _MORE_THAN_EPS = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Separation:
-    """Contact pressure p(u) and its exact inverse u(p) for one rough surface.
+    """Contact pressure p(u) of a rough surface over mean separation u, and its inverse u(p).
 
     Made by `separation_table`. Monotone everywhere: inside the table ln p is a cubic in
     ``U = ln(exp(u/h_rms) - 1)`` with the theory's own slopes; it is extrapolated at larger u as
@@ -56,11 +56,11 @@ class Separation:
     gamma: float
     table_pressure: np.ndarray = field(repr=False)
     table_separation: np.ndarray = field(repr=False)
-    _curve: PPoly = field(repr=False)  # ln p over U
+    _curve: PPoly = field(repr=False)  # ln p as a function of U
 
     @functools.cached_property
     def _with_slope(self) -> PPoly:
-        """Curve and its slope (2) in one spline."""
+        """Spline with two values: ln p and its slope."""
         curve = self._curve
         both = np.zeros((*curve.c.shape, 2))
         both[..., 0], both[1:, :, 1] = curve.c, curve.derivative().c
@@ -68,11 +68,11 @@ class Separation:
 
     @functools.cached_property
     def _ends(self) -> tuple[float, float, float, float, float]:
-        """Far end: ln p, d ln p/du; near end: p, u, -d ln u/d(p^2)."""
+        """Asymptotes: at large u, ln p and d ln p/du; at small u, p, u and -d ln u/d(p^2)."""
         far, near = self._curve.x[[-1, 0]]
         slope = self._curve(far, 1) * self._chain(self.table_separation[0])
         pressure, separation = self.table_pressure[-1], self.table_separation[-1]
-        # d ln p/du = slope of the curve times dU/du; for u ~ exp(-k p^2), d ln u/d(p^2) = -k
+        # chain rule d ln p/du = d ln p/dU dU/du; for u ~ exp(-k p^2), d ln u/d(p^2) = -k
         steep = self._curve(near, 1) * self._chain(separation)
         return (
             float(np.log(self.table_pressure[0])),
@@ -83,11 +83,11 @@ class Separation:
         )
 
     def _chain(self, separation: np.ndarray) -> np.ndarray:
-        """Return dU/du = 1 / (h (1 - exp(-u/h)))."""
+        """Return the derivative dU/du = 1 / (h (1 - exp(-u/h)))."""
         return -1 / (self.rms_roughness * np.expm1(-separation / self.rms_roughness))
 
     def pressure(self, separation: str | Pressure) -> Pressure:
-        """Return the contact pressure [Pa] at a mean separation [m] (any dims); infinite at 0.
+        """Return the contact pressure [Pa] at mean separations [m] (any dims); infinite at 0.
 
         Raises
         ------
@@ -98,7 +98,7 @@ class Separation:
         return like(self._evaluate(values)[0], separation, "pressure")
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return p [Pa] and dp/du [Pa/m], never positive, at mean separations u [m] (any shape).
+        """Return p [Pa] and dp/du [Pa/m] (zero or negative) at mean separations u [m] (any shape).
 
         Raises
         ------
@@ -108,7 +108,7 @@ class Separation:
         return self._evaluate(self._separations(separation))
 
     def separation(self, pressure: str | Pressure) -> Pressure:
-        """Return the mean separation [m] at a contact pressure [Pa] (any dims); infinite at 0.
+        """Return the mean separation [m] at contact pressures [Pa] (any dims); infinite at 0.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Separation:
         """
         values = pressure_values(pressure)
         log_far, slope_far, p_near, u_near, steep = self._ends
-        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # NaN gives NaN
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # NaN remains NaN
             log_p = np.log(values)
             u = self._invert(np.clip(log_p, log_far, np.log(p_near)))
             far = self.table_separation[0] + (log_p - log_far) / slope_far
@@ -146,7 +146,7 @@ class Separation:
             return pressure, pressure * slope
 
     def _invert(self, log_p: np.ndarray) -> np.ndarray:
-        """Return u from the table's cubic, solved by Newton's method within its interval."""
+        """Return u from the tabulated cubic, by Newton's method within one interval."""
         knots, curve = self._curve.x, self._curve
         levels = curve(knots)[::-1]
         cell = np.clip(np.searchsorted(levels, log_p, side="right") - 1, 0, levels.size - 2)
@@ -173,7 +173,7 @@ class Separation:
 def separation_table(
     psd: xr.Dataset, effective_modulus: str | float, gamma: float = 0.45, points: int = 120
 ) -> Separation:
-    """Return the contact pressure tabulated over the mean separation for one surface.
+    """Return a table of contact pressure over mean separation for one surface.
 
     Parameters
     ----------
@@ -234,11 +234,11 @@ def separation_table(
 def _unit_modulus_table(
     q_bytes: bytes, spectrum_bytes: bytes, gamma: float, points: int
 ) -> Separation:
-    """Return the table of a spectrum at E* = 1 Pa; the last few tables are cached."""
+    """Return the table for a spectrum at E* = 1 Pa; the last few tables are cached."""
     q, spectrum = np.frombuffer(q_bytes), np.frombuffer(spectrum_bytes)
     slope, weight = slope_quadrature(q, spectrum)
     height = float(np.sqrt(2 * np.pi * cumulative(q, spectrum, 1)[-1]))
-    # from the range in which the asymptote is accurate to 1e-6 to u below 1e-6 h_rms
+    # from pressures at which the asymptote is accurate to 1e-6, to those with u below 1e-6 h_rms
     lowest = 1e-6 * min(q[0] * height, ROOT_PI * slope[-1])
     stiffness = np.concatenate(
         [
@@ -250,7 +250,7 @@ def _unit_modulus_table(
     u, rate = tail(y, gamma) @ weight, -(tail_slope(y, gamma) @ weight)
     curve = (u / height + np.log(-np.expm1(-u / height)))[::-1]
     log_p = np.log(stiffness)[::-1]
-    # dU/d(ln p) = dU/du du/d(ln p)
+    # chain rule: dU/d(ln p) = dU/du du/d(ln p)
     slopes = -height * np.expm1(-u[::-1] / height) / rate[::-1]
     chords = np.diff(log_p) / np.diff(curve)
     steepest = 3 * np.maximum(np.append(chords, -np.inf), np.insert(chords, 0, -np.inf))

@@ -16,7 +16,7 @@ from tribolab.units.stamping import stamp
 
 
 class BoundedValue(NamedTuple):
-    """Value with its bounds in the literature."""
+    """Value with its lower and upper bounds in the literature."""
 
     value: float
     low: float
@@ -28,7 +28,7 @@ Works = TypeVar("Works", float, np.ndarray)
 
 
 def dry_work_of_adhesion(surface_energy_1: str | float, surface_energy_2: str | float) -> float:
-    """Return the work of adhesion of two dry solids from their surface energies.
+    """Return the work of adhesion of two dry solids, from their surface energies.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def wet_work_of_adhesion(
     contact_angle_1: str | float,
     contact_angle_2: str | float,
 ) -> float:
-    """Return the work of adhesion of two solids in a liquid.
+    """Return the work of adhesion of two solids in a liquid, from energies and contact angles.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ class SurfaceEnergies:
 def sample_work_of_adhesion(
     energies: SurfaceEnergies, samples: int = 1000, seed: int = 0
 ) -> np.ndarray:
-    """Return random dry and wet works of adhesion, each input uniform between its bounds.
+    """Return random dry and wet works of adhesion; each input is uniform between its bounds.
 
     Returns
     -------
@@ -196,7 +196,7 @@ def sample_work_of_adhesion(
 def work_of_adhesion_spread(
     energies: SurfaceEnergies | None = None, *, samples: int = 1000, seed: int = 0
 ) -> xr.Dataset:
-    """Return the dry and wet work of adhesion with their spread due to uncertain energies.
+    """Return the dry and wet work of adhesion, with their spread due to uncertain surface energies.
 
     Parameters
     ----------

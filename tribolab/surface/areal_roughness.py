@@ -1,4 +1,4 @@
-"""Roughness of a whole map: Sq and Sa of ISO 25178."""
+"""Areal roughness of height maps: Sq and Sa of ISO 25178."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tribolab.units.stamping import stamp
 
 
 def areal_roughness(scans: xr.Dataset) -> xr.Dataset:
-    """Return Sq and Sa of a map: rms and mean absolute height over all wavelengths.
+    """Return Sq and Sa, the rms and the mean absolute height of a map, over all wavelengths.
 
     Parameters
     ----------

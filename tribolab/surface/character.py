@@ -1,4 +1,4 @@
-"""Tests whether a surface can be self-affine: periodic waves and a lay contradict it."""
+"""Tests for periodic waves and a lay, which show that a surface is not self-affine."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ import xarray as xr
 
 from tribolab.surface.gaps import bridge_gaps, gaps_in
 
-_MAX_POINTS = 8192  # of a profile; a dominant wave must be sampled by several points a period
-_BLOCK = 256  # rows of a map whose slopes are computed at a time
-_MAX_ROWS = 512  # of a map: the mean power of each line is then accurate to 6 %
-_PERIODS = 12  # fewer periods in a scan can arise by chance, which makes up to six
-_LOBE = 2  # lines on either side over which a Hann window spreads a wave
+_MAX_POINTS = 8192  # points per profile at most: a dominant wave needs several points per period
+_BLOCK = 256  # number of map rows whose slopes are computed at a time
+_MAX_ROWS = 512  # map rows used at most; the mean power of a spectral line is then accurate to 6 %
+_PERIODS = 12  # fewest periods of a wave in a scan; up to six periods can arise by chance
+_LOBE = 2  # spectral lines on each side over which a Hann window spreads a wave
 _DOMINANT = 0.55  # share of the mean square height that no single wave of a random surface reaches
-_NEIGHBOURS, _EXCLUDED = 24, 4  # lines on each side for the usual level, without the nearest
-_CHANCE = 1e-6  # chance that any line of random heights exceeds its neighbours so far
-_MAX_SLOPE_RATIO = 0.4  # of slopes along and across the lay; smooth small maps give 0.6 by chance
+_NEIGHBOURS, _EXCLUDED = 24, 4  # lines on each side for the background level, nearest ones excluded
+_CHANCE = 1e-6  # accepted probability that a line of random heights exceeds its background so far
+_MAX_SLOPE_RATIO = 0.4  # rms slope along over across the lay; small smooth maps reach 0.6 by chance
 
 
 def self_affinity_objection(scans: xr.Dataset) -> str:
-    """Return the reason against extrapolating the spectrum of these scans as self-affine, or "".
+    """Return why the spectrum of these scans must not be extrapolated as self-affine; "" if it may.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def self_affinity_objection(scans: xr.Dataset) -> str:
 
 
 def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
-    """Return the share of mean square height in the strongest wave, and its wavelength [m].
+    """Return the share of the mean square height in the strongest wave, and its wavelength [m].
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
     windows = np.lib.stride_tricks.sliding_window_view(power, _NEIGHBOURS - _EXCLUDED)
     middle = np.median(windows, axis=1)
     left, right = middle[inner - _NEIGHBOURS], middle[inner + _EXCLUDED + 1]
-    # geometric mean for a falling spectrum; at its start only the right side
+    # background: geometric mean of both sides if the spectrum falls, else the right side alone
     usual = np.where(left >= right, np.sqrt(left * right), right) / np.log(2)
     ratio = power[inner] / np.where(usual > 0, usual, np.inf)
     best = int(np.argmax(ratio))
@@ -132,7 +132,7 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
 
 
 def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
-    """Return the mean power of rows (Hann window), and the wavelength [m] of the first line."""
+    """Return the mean power spectrum of rows (Hann window), and its longest wavelength [m]."""
     joined = -(-rows.shape[-1] // _MAX_POINTS)
     number = rows.shape[-1] // joined
     rows = rows[:: -(-len(rows) // _MAX_ROWS), : joined * number]
@@ -144,7 +144,7 @@ def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
 
 
 def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:
-    """Return the ratio of rms slopes along and across the lay (..., y, x); 1 without a lay."""
+    """Return the rms slope along the lay over that across it (..., y, x); 1 without a lay."""
     height = height.reshape(-1, *height.shape[-2:])
     sums = np.zeros(3)
     starts = range(0, height.shape[1] - 1, _BLOCK)

@@ -1,4 +1,4 @@
-"""Extrapolation of a measured spectrum to the wavenumbers that the contact needs."""
+"""Extrapolation of a measured spectrum to the wavenumbers that contact theory needs."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tribolab.units.stamping import stamp
 
 AS_MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
 _PER_DECADE = 20
-_ABOVE_ROLLOFF = 1.5  # the fit starts this far above the roll-off
-_NORMAL = 1.959963984540054  # two-sided 95 % quantile of the normal distribution
+_ABOVE_ROLLOFF = 1.5  # start of the fitted range, relative to the roll-off
+_NORMAL = 1.959963984540054  # 97.5 % quantile of the normal distribution
 
 
 class PowerLaw(NamedTuple):
-    """Straight line in log-log: ``ln C = level + slope (ln q - centre)``."""
+    """Power law of a spectrum: a straight line ``ln C = level + slope (ln q - centre)``."""
 
     level: float
     slope: float
@@ -31,7 +31,7 @@ class PowerLaw(NamedTuple):
 
     @property
     def hurst(self) -> float:
-        """Hurst exponent of ``C ~ q^(-2(1+H))``."""
+        """Hurst exponent H, from ``C ~ q^(-2(1+H))``."""
         return -0.5 * self.slope - 1
 
     @property
@@ -40,7 +40,7 @@ class PowerLaw(NamedTuple):
         return 0.5 * self.slope_error
 
     def log_value(self, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return ln C and its standard error at a wavenumber."""
+        """Return ln C of the power law at a wavenumber, and its standard error."""
         x = np.log(wavenumber) - self.centre
         return self.level + self.slope * x, np.hypot(self.level_error, self.slope_error * x)
 
@@ -49,7 +49,7 @@ _UNKNOWN = PowerLaw(*[float("nan")] * 5)
 
 
 class _Part(NamedTuple):
-    """Part of a spectrum; the band is relative to the values (2, wavenumber)."""
+    """Section of a spectrum; its band is relative to the values (2, wavenumber)."""
 
     wavenumber: np.ndarray
     value: np.ndarray
@@ -57,7 +57,7 @@ class _Part(NamedTuple):
     origin: int
 
     def cut(self, low: float, high: float) -> _Part:
-        """Cut the part at two wavenumbers, with nodes at the cuts."""
+        """Return the section between two wavenumbers, with nodes at both ends."""
         q = self.wavenumber
         ends = np.array([end for end in (low, high) if q[0] < end < q[-1] and end not in q])
         nodes = np.unique(np.concatenate([q[(q >= low) & (q <= high)], ends]))
@@ -73,7 +73,7 @@ def extrapolate(
     q_high: str | float = np.pi / 1e-9,
     fit_decade: tuple[str | float, str | float] | None = None,
 ) -> xr.Dataset:
-    """Extrapolate a 2D spectrum: constant at small wavenumbers, a power law at large ones.
+    """Return a 2D spectrum extended by a constant at small and a power law at large wavenumbers.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
-    rough = _is_surface_law(law)  # otherwise nothing was extrapolated
+    rough = _is_surface_law(law)  # otherwise the spectrum was not extended by the power law
     attrs = {
         **kept,
         "hurst_exponent": law.hurst if rough else float("nan"),
@@ -183,14 +183,14 @@ def extrapolate(
 
 
 def _is_surface_law(law: PowerLaw) -> bool:
-    """Return whether a rough surface can have this Hurst exponent, within its error."""
+    """Return whether the Hurst exponent is possible for a rough surface, within its error."""
     hurst, error = law.hurst, law.hurst_error
     sure = hurst - _NORMAL * error
     return bool(MIN_HURST.value <= hurst <= MAX_FITTED_HURST.value and sure <= MAX_SURE_HURST.value)
 
 
 def _refuse_law(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
-    """Raise an error if the spectrum falls in a way that no rough surface has."""
+    """Raise an error if the fitted slope of the spectrum is impossible for a rough surface."""
     if _is_surface_law(law):
         return
     if law.hurst < MIN_HURST.value:
@@ -213,7 +213,7 @@ def _refuse_law(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
 
 
 def origin_flags() -> dict[str, str | list[int]]:
-    """Return CF flag attributes that explain the values of ``origin``."""
+    """Return the CF flag attributes that explain the values of the variable ``origin``."""
     return {
         "flag_values": [AS_MEASURED, TO_SMALL, TO_LARGE],
         "flag_meanings": "measured extrapolated_to_small_q extrapolated_to_large_q",
@@ -227,7 +227,7 @@ def _grid(low: float, high: float) -> np.ndarray:
 
 
 def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
-    """Return the lower and upper end of the band relative to C; 1 without a band."""
+    """Return the lower and upper limit of the 95 % band divided by C; 1 without a band."""
     if "psd_2d_low" not in psd:
         return np.ones((2, c.size))
     band = np.stack([psd.psd_2d_low.values, psd.psd_2d_high.values])
@@ -235,7 +235,7 @@ def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
 
 
 def _log_error(psd: xr.Dataset) -> np.ndarray | None:
-    """Return the standard error of ln C from the width of the 95 % band."""
+    """Return the standard error of ln C, from the width of the 95 % band."""
     if "psd_2d_low" not in psd:
         return None
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -250,7 +250,7 @@ def _fit(
     error: np.ndarray | None,
     fit_decade: tuple[str | float, str | float] | None,
 ) -> tuple[PowerLaw, tuple[float, float], float]:
-    """Return the power law over the fitted decade, that decade, and the roll-off [1/m]."""
+    """Return the fitted power law, the decade of its fit, and the roll-off [1/m]."""
     if fit_decade is not None:
         low, high = (to_si(value, "1/m", "fit_decade") for value in fit_decade)
         law = _regress(q, c, error, low, high)
@@ -261,7 +261,7 @@ def _fit(
     for _ in range(20):
         law = _regress(q, c, error, low, high)
         rolloff = _crossing(law, c[0])
-        # at least four points stay in the fit, wherever the roll-off is
+        # wherever the roll-off lies, the fit keeps at least four points
         new = min(max(floor, float(q[0]), _ABOVE_ROLLOFF * rolloff), float(q[-min(4, q.size)]))
         if abs(new - low) <= 1e-9 * low:
             break

@@ -14,7 +14,7 @@ _ALPHA = float(np.sqrt(np.log(2) / np.pi))
 
 
 def transmission(wavelength: np.ndarray | float, cutoff: float) -> np.ndarray:
-    """Return the amplitude transmission [1] of the Gaussian low-pass; 0.5 at `cutoff` [m].
+    """Return the amplitude transmission [1] of the Gaussian low-pass filter; 0.5 at `cutoff` [m].
 
     >>> round(float(transmission(0.8e-3, 0.8e-3)), 12)
     0.5
@@ -23,7 +23,7 @@ def transmission(wavelength: np.ndarray | float, cutoff: float) -> np.ndarray:
 
 
 def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
-    """Low-pass the heights along x with the Gaussian filter of ISO 16610-21.
+    """Return profiles smoothed along x by the Gaussian low-pass filter of ISO 16610-21.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
             function="gaussian_filter",
         )
     height = scans.height.transpose(..., "x")
-    # the weight there is 5e-14 of its maximum
+    # the filter is cut off where its weight is 5e-14 of the maximum
     reach = min(int(np.ceil(1.5 * cutoff / pitch)), x.size - 1)
     at = pitch * np.arange(-reach, reach + 1)
     weights = np.exp(-np.pi * (at / (_ALPHA * cutoff)) ** 2)

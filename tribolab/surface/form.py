@@ -11,7 +11,7 @@ from tribolab.surface.gaps import bridge_gaps
 from tribolab.surface.level import rounding_only
 from tribolab.units.stamping import stamp
 
-# Polynomial order that each form corresponds to: removing it removes so many of the longest waves.
+# Polynomial order equivalent to each form: removing the form removes as many of the longest waves.
 _FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
 _STEPS = 60
 _NO_CIRCLE = Cure(
@@ -23,7 +23,7 @@ _CHUNK = 1 << 20  # heights processed at a time
 
 
 def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
-    """Fill dropouts (NaN) by interpolation, and count them.
+    """Return scans with dropouts (NaN) filled by interpolation, and the number of dropouts.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
 
 
 def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> xr.Dataset:
-    """Remove form from scans and record what was removed.
+    """Return scans without their form (tilt, circle, polynomial), and record what was removed.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
 
 
 def removed_order(scans: xr.Dataset) -> int:
-    """Return the polynomial order of the form already removed; 0 if only the mean was."""
+    """Return the polynomial order of the removed form; 0 if only the mean was removed."""
     return int(scans.attrs.get("form_order", 0))
 
 
@@ -178,15 +178,15 @@ def _extended_history(scans: xr.Dataset, action: str) -> str:
 
 
 def _remove_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Set the residual of a perfect form to zero, so that rounding is not read as roughness."""
+    """Set the residual of a perfect form to zero: rounding errors are not roughness."""
     level = rounding_only(left, rows)[:, None]
     return np.where(level & np.isfinite(left), 0.0, left) if level.any() else left
 
 
 def _least_squares(rows: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Return least-squares coefficients (row, term) of the basis; NaN has no weight."""
+    """Return the least-squares coefficients (row, term) of a polynomial basis; NaN is left out."""
     if np.isfinite(rows).all():
-        # Legendre polynomials: well conditioned
+        # the normal equations of Legendre polynomials are well conditioned
         return np.linalg.solve(basis.T @ basis, (rows @ basis).T).T
     present = np.isfinite(rows)
     if present.sum(1).min() < basis.shape[1] + 1:
@@ -216,7 +216,7 @@ def _polynomial(
 def _circle(
     rows: np.ndarray, x: np.ndarray, scale: float, basis: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    # in Legendre polynomials: z0 + s x + c x^2 / 2
+    # coefficients of Legendre polynomials for z0 + s x + c x^2 / 2
     to_circle = np.array([[1, 0, -0.5], [0, 1 / scale, 0], [0, 0, 3 / scale**2]])
     known = _least_squares(rows, basis) @ to_circle.T
     known[:, 1] /= np.hypot(1, known[:, 1])
@@ -267,7 +267,7 @@ def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
 
 
 def _map_coefficients(heights: np.ndarray, along_y: np.ndarray, along_x: np.ndarray) -> np.ndarray:
-    """Return Legendre coefficients (term of y, term of x) of least squares, up to the total degree.
+    """Return the Legendre coefficients (y term, x term) of a map, fitted up to a total degree.
 
     The sums over a map of products of polynomials are sums over y of sums over x, so that no basis
     as large as the map is needed; missing heights (NaN) have no weight.

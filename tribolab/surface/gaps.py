@@ -1,4 +1,4 @@
-"""Scans with missing heights: interpolation across gaps, and the effect of gaps on a result.
+"""Scans with missing heights: interpolation across gaps, and the effect of gaps on results.
 
 The effect of a gap is estimated from the scan itself: the same gaps are placed elsewhere on it and
 bridged, and the result is computed again.
@@ -14,17 +14,17 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError
 
-_TRIALS = 16  # positions at which the gaps are placed
-_MAX_MISSING = 0.5  # share of missing heights above which a scan cannot be evaluated
-_FEW_MISSING = 8  # missing heights at an end are bridged by the nearest height
-_STUDENT = 1.087  # 97.5 % quantile of Student's t with 15 degrees of freedom over the normal's
+_TRIALS = 16  # number of random positions at which the gaps are placed
+_MAX_MISSING = 0.5  # largest share of missing heights with which a scan is evaluated
+_FEW_MISSING = 8  # up to so many missing heights at an end are filled with the nearest height
+_STUDENT = 1.087  # 97.5 % quantile of Student's t (15 degrees of freedom) over the normal one
 _NORMAL = 1.96
-_SHIFT_SHARE = 0.3  # of the correction, added to its error: gaps are not at random places
-_MAX_FACTOR = float(np.log(2.0))  # larger correction factors depend mostly on the gaps
+_SHIFT_SHARE = 0.3  # share of the correction added to its error, because gaps do not lie at random
+_MAX_FACTOR = float(np.log(2.0))  # change of ln(power) above which gaps dominate a result
 
 
 class GapEffect(NamedTuple):
-    """Effect of gaps on a result: mean shift, and standard error after correction.
+    """Effect of gaps on a result: its mean shift, and its standard error after correction.
 
     The result minus the shift is the result of the complete scan, within 1.96 errors in 95 % of
     cases. A large share of the shift from bridges hides the surface.
@@ -36,7 +36,7 @@ class GapEffect(NamedTuple):
 
 
 def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
-    """Return a mask of missing heights, including those filled by `fill_dropouts`, like ``height``.
+    """Return a mask of missing heights (dims of ``height``), including those that were filled.
 
     Returns None if no height is missing.
     """
@@ -48,7 +48,7 @@ def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
 
 
 def cut_ends(scans: xr.Dataset) -> xr.Dataset:
-    """Cut profiles to the range between the first and last height that all of them have.
+    """Return profiles cut to the range between the first and last height common to all of them.
 
     Maps are unchanged, and so are profiles that lack only a few heights or would lose more than
     half.
@@ -69,7 +69,7 @@ def cut_ends(scans: xr.Dataset) -> xr.Dataset:
 
 
 def bridge_gaps(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndarray:
-    """Return heights with bridged gaps: linear in profiles, from four sides in maps (..., y, x).
+    """Return heights interpolated across gaps: linearly in profiles, from four sides in maps.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def bridge_gaps(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.
                 "a profile has no height that is a number; leave that scan out",
                 function="fill_dropouts",
             )
-        alone = missing & (weights == 0)  # the corner where two strips meet
+        alone = missing & (weights == 0)  # no height was measured in the same row or column
         total[alone], weights[alone] = float(np.mean(height[~missing])), 1.0
     return np.where(missing, np.divide(total, weights, where=missing, out=total), height)
 
@@ -138,7 +138,7 @@ def gap_effect(
     joint: bool = False,
     own: np.ndarray | None = None,
 ) -> GapEffect:
-    """Return the effect of gaps on a result, from placing the same gaps elsewhere on the scan.
+    """Return the effect of gaps on a result, found by placing the same gaps elsewhere on the scan.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def gap_effect(
         laid = missing[rng.permutation(len(missing))] if joint else missing
         gaps, row = _move_gaps(laid, rng, (-2, -1) if is_map else (-1,))
         change = measure(bridge_gaps(height, gaps, is_map=is_map)) - whole
-        if own is not None and is_map:  # the row that these gaps belong to
+        if own is not None and is_map:  # assign each change to the row that its gaps come from
             back = np.broadcast_to(np.argsort(row, axis=-1), change.shape)
             change = np.take_along_axis(change, back, axis=-1)
         changes.append(change)
@@ -204,7 +204,7 @@ def gap_effect(
         else (np.array(1.0 / (1.0 - share)), np.array(1.0))
     )
     shift = every.mean(axis=0) * grow
-    # gaps at the single highest peak give longer tails than the normal distribution
+    # a gap at the highest peak gives longer tails than the normal distribution has
     farthest = np.abs(every - every.mean(axis=0)).max(axis=0) / _NORMAL
     scatter = np.maximum(_STUDENT * every.std(axis=0, ddof=1), farthest)
     error = np.hypot(np.sqrt(1.0 + 1.0 / _TRIALS) * widen * scatter, _SHIFT_SHARE * shift)
@@ -212,12 +212,12 @@ def gap_effect(
 
 
 def logarithm(power: np.ndarray) -> np.ndarray:
-    """Return the natural logarithm of positive values; zeros give that of the smallest float."""
+    """Return the natural logarithm of values; zeros are replaced by the smallest positive float."""
     return np.log(np.maximum(power, np.finfo(float).tiny))
 
 
 def effective_values(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
-    """Return the number of independent values with the error of these and the gaps combined.
+    """Return the number of independent values, reduced by the additional error due to gaps.
 
     >>> effect = GapEffect(shift=np.zeros(1), error=np.array([0.1]), bridges=np.zeros(1))
     >>> round(float(effective_values(np.array([100.0]), effect)[0]), 9)
@@ -227,7 +227,7 @@ def effective_values(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
 
 
 def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
-    """Return the wavenumber [1/m] above which bridges changed half of the power; else infinite.
+    """Return the wavenumber [1/m] above which bridged gaps double or halve the power; inf if none.
 
     >>> effect = GapEffect(np.zeros(4), np.ones(4), bridges=np.array([0.9, 0.1, 0.8, 0.9]))
     >>> gap_cutoff(np.array([1.0, 2.0, 3.0, 4.0]), effect)
@@ -240,7 +240,7 @@ def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
 def _window_factors(
     missing: np.ndarray, left: np.ndarray, logarithms: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return factors on mean change (result, scan) and scatter (scan) for gaps."""
+    """Return factors that scale the test gaps' mean change (result, scan) and scatter (scan)."""
     there = 1.0 - missing.mean(axis=1)
     lost = np.log(np.maximum(left, 1.0 / missing.shape[1]) / there).mean(axis=0)
     fresh = (there - left).mean(axis=0) / np.where(there < 1.0, 1.0 - there, 1.0)
@@ -255,10 +255,10 @@ def _window_factors(
 def _move_gaps(
     missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return gaps of each scan, moved and mirrored at random, and the rows used, (scan, y)."""
+    """Return the gaps of each scan at random new positions, and their original rows (scan, y)."""
     moved = np.empty_like(missing)
     came = np.empty(missing.shape[:2], dtype=int)
-    for scan, gaps in enumerate(missing):  # loop over scans
+    for scan, gaps in enumerate(missing):
         row = np.arange(missing.shape[1])
         for axis in axes:
             by = _shift(gaps, rng, axis)
@@ -273,7 +273,7 @@ def _move_gaps(
 
 
 def _shift(gaps: np.ndarray, rng: np.random.Generator, axis: int) -> int:
-    """Return the distance by which gaps are moved; no gap of a profile is split at the ends."""
+    """Return a random shift of the gaps that splits no gap of a profile at its ends."""
     if gaps.ndim > 1:
         return int(rng.integers(gaps.shape[axis]))
     starts = np.flatnonzero(~(gaps & np.roll(gaps, 1)))

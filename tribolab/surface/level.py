@@ -1,4 +1,4 @@
-"""Heights without roughness: equal, or on a perfect line or plane apart from rounding."""
+"""Detection of scans without roughness: perfectly flat or straight apart from rounding."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError
 
-# A deviation below this share of the largest height is rounding: floats carry 16 digits, of
-# which a form fit loses a few; the best gauges resolve 8.
+# A deviation below this share of the largest height is rounding: floats have 16 digits, and
+# the form fit loses a few of them; the best instruments resolve 8.
 _ROUNDING = 1e-12
 _CHUNK = 1 << 20
 
 
 def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
-    """Return a mask of rows whose residual heights are rounding errors only.
+    """Return a mask of the rows whose residual heights are only rounding errors.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def _largest(rows: np.ndarray) -> np.ndarray:
 
 
 def level_rows(height: np.ndarray) -> np.ndarray:
-    """Return a mask of rows (row, x) whose heights are all equal or on one straight line.
+    """Return a mask of the rows (row, x) whose heights all lie on one straight line.
 
     Examples
     --------
@@ -69,15 +69,15 @@ def level_rows(height: np.ndarray) -> np.ndarray:
 
 
 def level_map(height: np.ndarray) -> bool:
-    """Return whether the heights (y, x) of a map are all equal or on one plane."""
-    first = slice(0, 8)  # these rows are enough for most maps, which are not level
+    """Return whether all heights (y, x) of a map lie on one plane."""
+    first = slice(0, 8)  # most maps are rough, which their first rows already show
     return bool(
         level_rows(height[first]).all() and level_rows(height).all() and level_rows(height.T).all()
     )
 
 
 def refuse_level(who: str, scans: xr.Dataset, level: Sequence[bool] | np.ndarray) -> None:
-    """Raise an error that names the first scan without roughness.
+    """Raise an error that names the first scan without roughness, if there is one.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Limits for spectra of surfaces, with their reasons."""
+"""Limits that decide how spectra of surfaces are evaluated, with their reasons."""
 
 from tribolab.core.limit import Limit
 

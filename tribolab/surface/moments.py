@@ -1,4 +1,4 @@
-"""Moments of a power spectrum, exact if it is a power law between its nodes.
+"""Moments of a power spectrum, exact for a power law between neighbouring nodes.
 
 Between two nodes C(q) is the straight line in log-log that joins them, so the integral over a bin
 is a closed form: with g = q^(n+1) C, int q^n C dq = ln(q_b/q_a) (g_b - g_a) / ln(g_b/g_a). No bin
@@ -15,7 +15,7 @@ from tribolab.core.errors import AnalysisError
 
 
 def spectrum_arrays(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return the checked wavenumbers [rad/m] and C [m4] of a power spectrum.
+    """Return the wavenumbers [rad/m] and values C [m4] of a power spectrum, after checking them.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def spectrum_arrays(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def bin_integrals(q: np.ndarray, spectrum: np.ndarray, order: float) -> np.ndarray:
-    """Return the integrals of q^order C over the bins between the nodes.
+    """Return the integral of q^order C over each bin between neighbouring nodes.
 
     Parameters
     ----------
@@ -93,12 +93,12 @@ def _integral(
     order: float,
     linear: np.ndarray,
 ) -> np.ndarray:
-    """Return integrals of q^order C from a to b, for C a power law or, if `linear`, a line."""
+    """Return the integral of q^order C from a to b, for C a power law or, if `linear`, a line."""
     width = np.log(b / a)
     g = a ** (order + 1) * left
     with np.errstate(divide="ignore", invalid="ignore"):
-        z = np.log(right / left) + (order + 1) * width  # log-log slope of the integrand
-        small = np.abs(z) < 1e-5  # exponent -1: the closed form is 0/0, so a series is used
+        z = np.log(right / left) + (order + 1) * width  # (log-log slope of C + order + 1) width
+        small = np.abs(z) < 1e-5  # for an exponent of -1 the closed form is 0/0: use a series
         result = width * g * np.where(small, 1 + z / 2 + z * z / 6, np.expm1(z) / z)
         if linear.any():
             slope = np.where(b > a, (right - left) / (b - a), 0.0)
@@ -122,7 +122,7 @@ def cumulative(q: np.ndarray, spectrum: np.ndarray, order: float) -> np.ndarray:
 def cumulative_at(
     wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray, order: float
 ) -> np.ndarray:
-    """Return the integral of q^order C from the first node to any wavenumber of the spectrum."""
+    """Return the integral of q^order C from the first node to any wavenumbers of the spectrum."""
     left = np.clip(np.searchsorted(q, wavenumber, side="right") - 1, 0, q.size - 2)
     low, high = spectrum[left], spectrum[left + 1]
     here = spectrum_at(wavenumber, q, spectrum)
@@ -131,7 +131,7 @@ def cumulative_at(
 
 
 def spectral_moment(psd: xr.Dataset, order: float) -> float:
-    """Return the moment int q^order C dq of a power spectrum over all its wavenumbers.
+    """Return the moment int q^order C dq over all wavenumbers of a power spectrum.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def spectral_moment(psd: xr.Dataset, order: float) -> float:
 
 
 def cumulative_moment(psd: xr.Dataset, order: float) -> xr.DataArray:
-    """Return the cumulative moment int_{q0}^{q} q'^order C dq' at every wavenumber of the spectrum.
+    """Return the cumulative moment int_{q0}^{q} q'^order C dq' at each wavenumber of a spectrum.
 
     Parameters
     ----------
@@ -204,19 +204,19 @@ def cumulative_moment(psd: xr.Dataset, order: float) -> xr.DataArray:
 
 
 def rms_roughness(psd: xr.Dataset) -> float:
-    """Return the rms roughness h_rms [m]: <h^2> = 2 pi int q C dq."""
+    """Return the rms roughness h_rms [m] of a spectrum: <h^2> = 2 pi int q C dq."""
     return float(np.sqrt(2 * np.pi * spectral_moment(psd, 1)))
 
 
 def rms_slope(psd: xr.Dataset) -> float:
-    """Return the rms slope xi [1] of the surface: xi^2 = 2 pi int q^3 C dq (Eq. 12)."""
+    """Return the rms slope xi [1] of a spectrum: xi^2 = 2 pi int q^3 C dq (Eq. 12)."""
     return float(np.sqrt(2 * np.pi * spectral_moment(psd, 3)))
 
 
 def refine_nodes(
     q: np.ndarray, spectrum: np.ndarray, per_decade: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the spectrum with extra nodes, until bins are narrower than 1/per_decade.
+    """Return the spectrum with nodes added until there are `per_decade` of them per decade.
 
     The moments do not change; quantities at the nodes (a gap, a modulus) are resolved better.
     Bins next to a zero, where C is linear in q, are not divided.
@@ -231,7 +231,7 @@ def refine_nodes(
 
 
 def spectrum_at(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
-    """Return C at any wavenumber of the spectrum: power law, or linear next to a zero."""
+    """Return C at any wavenumber of a spectrum, by power laws, or linearly next to a zero."""
     wavenumber = np.asarray(wavenumber, dtype=float)
     if (spectrum > 0).all():
         return np.exp(np.interp(np.log(wavenumber), np.log(q), np.log(spectrum)))

@@ -1,4 +1,4 @@
-"""Roughness parameters of profiles (ISO 21920, ISO 4287), and moments of a spectrum."""
+"""Roughness parameters of profiles (ISO 21920, ISO 4287) and of spectra."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from tribolab.surface.spectra.tails import long_holes, tails
 from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
-STANDARD_CUTOFF = 0.8e-3  # m, cut-off of most surfaces (ISO 21920-3)
-_LENGTHS = 5  # length of a shorter profile in cut-offs
-_MIN_LENGTHS = 3  # sampling lengths needed to estimate the standard error of their mean
+STANDARD_CUTOFF = 0.8e-3  # m, default cut-off for most surfaces (ISO 21920-3)
+_LENGTHS = 5  # a shorter profile is evaluated with a cut-off of its length divided by this
+_MIN_LENGTHS = 3  # fewest sampling lengths that give the standard error of their mean
 
 
 def roughness_parameters(
@@ -101,7 +101,7 @@ def roughness_parameters(
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
     if missing is not None:
         data = _correct_gaps(data, scans.assign(height=given), missing, evaluation)
-    if not is_map:  # rows of a map are not independent of each other
+    if not is_map:  # the rows of a map are correlated, so they give no standard error
         data = data.assign(
             {f"{name}_sem": (dims, error) for name, error in _errors(by_length).items()}
         )
@@ -145,7 +145,7 @@ def primary_roughness(scans: xr.Dataset) -> xr.DataArray:
 
 
 class _Evaluation(NamedTuple):
-    """Settings of the roughness evaluation: pitch, cut-offs [m], prior filter, lengths."""
+    """Settings of a roughness evaluation: pitch and cut-offs [m], filtering already done."""
 
     pitch: float
     cut: float | None
@@ -155,22 +155,22 @@ class _Evaluation(NamedTuple):
 
     @property
     def edge(self) -> int:
-        """Number of points at each end where the filter runs in."""
+        """Number of points lost at each end to the end effects of the filter."""
         return int(round(0.5 * self.cut / self.pitch)) if self.cut and not self.filtered else 0
 
     def lengths(self, points: int) -> tuple[float, int]:
-        """Return the evaluation length [m] of so many points, and its sampling lengths."""
+        """Return the evaluation length [m] for a number of points, and its sampling lengths."""
         length = (points - 2 * self.edge) * self.pitch
         return length, 5 if self.cut is None else max(1, int(round(length / self.cut - 0.25)))
 
     def parts(self, rows: np.ndarray) -> np.ndarray:
-        """Cut rows (..., x) of the evaluation length into sampling lengths (..., length, x)."""
+        """Return rows (..., x) divided into sampling lengths (..., sampling length, x)."""
         _, lengths = self.lengths(rows.shape[-1] + 2 * self.edge)
         size = rows.shape[-1] // lengths
         return rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
 
     def profile(self, scans: xr.Dataset) -> np.ndarray:
-        """Return roughness profile [m] (..., x) over the evaluation length."""
+        """Return the roughness profile [m] (..., x) over the evaluation length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         profile = scans if self.fine is None else gaussian_filter(scans, self.fine)
         height = profile.height.transpose(..., "x")
@@ -186,12 +186,12 @@ class _Evaluation(NamedTuple):
         return np.asarray(height.values)
 
     def parameters(self, scans: xr.Dataset) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """Return the parameters of profiles without gaps, overall and for each sampling length."""
+        """Return the parameters of profiles without gaps, overall and per sampling length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         rows = self.profile(scans)
         parts = self.parts(rows)
         deviation = parts if self.sampling and cut is not None else rows[..., None, :]
-        if cut is None:  # otherwise the filter's mean line is the zero of the profile
+        if cut is None:  # without a filter, the mean height is the reference line
             deviation = deviation - deviation.mean(-1, keepdims=True)
         slope = _slope(rows, pitch)
         given = scans.height.transpose(..., "x").values.reshape(-1, points)
@@ -218,7 +218,7 @@ class _Evaluation(NamedTuple):
 
 
 def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the standard errors of means over the sampling lengths, given enough of them."""
+    """Return standard errors of the means over sampling lengths, if there are enough of them."""
     return {
         name: of.std(-1, ddof=1) / np.sqrt(of.shape[-1])
         for name, of in by_length.items()
@@ -229,11 +229,11 @@ def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 def _correct_gaps(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
-    """Return results corrected for gaps, with their remaining standard error (``Ra_gap_error``)."""
+    """Return parameters corrected for gaps, with the remaining error (``Ra_gap_error``)."""
     shape = scans.height.shape
     is_map = "y" in scans.height.dims
     grid = shape[-2:] if is_map else shape[-1:]
-    # the mean over sampling lengths loses its share with each missing one; so does the skewness
+    # the effect of gaps on Rsk and on means over sampling lengths is additive, not a factor
     added = {"Rsk", "Rku"} if evaluation.sampling and evaluation.cut else {"Rsk"}
     factors = np.array([not is_map and name not in added for name in data])
 
@@ -253,7 +253,7 @@ def _correct_gaps(
     rows = data["Ra"].shape
     for number, name in enumerate(list(data)):
         shift, error = effect.shift[number].reshape(rows), effect.error[number].reshape(rows)
-        if name == "Rz":  # gaps rarely hide the highest peak, but then they change the result a lot
+        if name == "Rz":  # gaps seldom hide the highest peak, but if they do, Rz changes a lot
             error = np.full_like(error, error.max())
         if factors[number]:
             data[name] = data[name] * np.exp(-shift)
@@ -269,7 +269,7 @@ def _correct_gaps(
 def _correct_tails(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
-    """Replace Rsk and Rku by those of measured heights if a hole spans half a sampling length."""
+    """Replace Rsk and Rku by those of the measured heights if a gap is long."""
     rows = evaluation.profile(scans)
     edge, points = evaluation.edge, missing.shape[-1]
     parts = evaluation.parts(rows.reshape(-1, rows.shape[-1]))
@@ -287,7 +287,7 @@ def _correct_tails(
 def _long_cutoff(
     lambda_c: str | float | None, scans: xr.Dataset, length: float
 ) -> tuple[float | None, bool]:
-    """Return the long-wave cut-off [m], and whether the instrument applied it already."""
+    """Return the long-wave cut-off [m], and whether the instrument has already applied it."""
     if lambda_c is None:
         return None, False
     if lambda_c != "auto":
@@ -298,7 +298,7 @@ def _long_cutoff(
 
 
 def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
-    """Return the local slope from the seven-point formula of ISO 4287 (4.4.1)."""
+    """Return local slopes of profiles by the seven-point formula of ISO 4287 (4.4.1)."""
     if rows.shape[-1] < 7:
         raise AnalysisError("seven points are the least", function="roughness_parameters")
     ahead = 45 * rows[..., 4:-2] - 9 * rows[..., 5:-1] + rows[..., 6:]
@@ -308,7 +308,7 @@ def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
 
 @over_dims(psd=("wavenumber",))
 def spectral_roughness(psd: xr.Dataset) -> xr.Dataset:
-    """Return the rms roughness, slope and curvature of a spectrum, cumulative in q.
+    """Return the rms roughness, slope and curvature of a spectrum, cumulative in wavenumber.
 
     Parameters
     ----------

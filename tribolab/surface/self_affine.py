@@ -1,4 +1,4 @@
-"""Self-affine roughness with a roll-off: constant below it, a power law above."""
+"""Self-affine spectrum with a roll-off: constant below the roll-off, a power law above."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.units.stamping import stamp
 
 @dataclass(frozen=True)
 class SelfAffine:
-    """Isotropic 2D power spectrum: `plateau` below the roll-off, q^(-2(1+H)) above.
+    """Isotropic 2D power spectrum: constant `plateau` below the roll-off, q^(-2(1+H)) above.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class SelfAffine:
     high: float
 
     def __post_init__(self) -> None:
-        """Raise an error for parameters without physical meaning."""
+        """Raise an error for physically impossible parameters."""
         if not 0 < self.low < self.rolloff < self.high:
             raise AnalysisError(
                 "self-affine spectrum: 0 < low < rolloff < high is wanted; got "
@@ -58,7 +58,7 @@ class SelfAffine:
 
 
 def psd_2d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
-    """Return the two-dimensional power spectrum C(q) [m4] at wavenumbers [1/m] (any dims)."""
+    """Return the 2D power spectrum C(q) [m4] at wavenumbers [1/m] (any dims)."""
     q = np.asarray(wavenumber, dtype=float)
     above = np.maximum(q / spectrum.rolloff, 1.0) ** (-2 * (1 + spectrum.hurst))
     inside = (q >= spectrum.low) & (q <= spectrum.high)

@@ -19,7 +19,7 @@ def synthesise_profiles(
     profiles: int = 1,
     rng: np.random.Generator | int | None = None,
 ) -> xr.Dataset:
-    """Draw straight profiles of a random Gaussian surface with a given isotropic spectrum.
+    """Return straight profiles of a random Gaussian surface with a given isotropic spectrum.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def synthesise_map(
     pitch: float,
     rng: np.random.Generator | int | None = None,
 ) -> xr.Dataset:
-    """Draw a square map of a random Gaussian surface with a given isotropic spectrum.
+    """Return a square map of a random Gaussian surface with a given isotropic spectrum.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def synthesise_map(
     step = 2 * np.pi / (points * pitch)
     white = np.fft.rfft2(rng.standard_normal((points, points)))
     height = np.fft.irfft2(white * (2 * np.pi / pitch) * np.sqrt(c), s=(points, points))
-    twice = np.ones(q.shape[1])  # weight of a column: itself and its mirror image
+    twice = np.ones(q.shape[1])  # each column counts twice, for its mirror image
     twice[1 : (points + 1) // 2] = 2
     x = pitch * np.arange(points, dtype=float)
     inside = q[c > 0]

@@ -1,1 +1,1 @@
-"""Power spectra of profiles and maps, with their reliable range and error."""
+"""Power spectra of profiles and maps, with their trusted range and error."""

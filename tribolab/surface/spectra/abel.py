@@ -1,4 +1,4 @@
-"""Inverse Abel transform: spectrum of the isotropic surface from that of its profiles."""
+"""Inverse Abel transform: from the spectrum of profiles to that of the isotropic surface."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 @dataclass(frozen=True)
 class PowerLaws:
-    """Two-sided C_1D that is a power law in each bin and may jump between bins.
+    """Two-sided C_1D as one power law per bin; it may jump between bins.
 
     Parameters
     ----------
@@ -53,12 +53,12 @@ class PowerLaws:
 
     @property
     def last(self) -> float:
-        """C_1D at the right edge of the last bin [m3], where the tail begins."""
+        """C_1D at the right edge of the last bin [m3], where the extrapolated tail starts."""
         return float(self.level[-1] * (self.edges[-1] / self.edges[-2]) ** self.slope[-1])
 
     @property
     def exponent(self) -> float:
-        """Exponent s of the tail, ``C_1D ~ k^-s``."""
+        """Exponent s of the extrapolated tail, ``C_1D ~ k^-s``."""
         if self.tail is None:
             return -float(self.slope[-1])
         return -float(self.tail @ np.log(self.power)) - self.tail_offset
@@ -66,7 +66,7 @@ class PowerLaws:
 
 @dataclass(frozen=True)
 class Annuli:
-    """Mean square heights of annuli of the wavenumber plane.
+    """Mean square heights of annuli (rings) in the plane of wavenumbers.
 
     Parameters
     ----------
@@ -88,19 +88,19 @@ class Annuli:
 
     @property
     def mean(self) -> np.ndarray:
-        """Mean of C over each annulus [m4]."""
+        """Mean of C in each annulus [m4]."""
         return self.power / (np.pi * np.diff(self.edges**2))
 
 
 def power_laws_between(wavenumber: ArrayLike, psd_1d: ArrayLike) -> PowerLaws:
-    """Return the power laws between the nodes of a two-sided C_1D [m3], continuous at the nodes."""
+    """Return power laws that connect the nodes of a two-sided C_1D [m3]."""
     k, c = np.asarray(wavenumber, dtype=float), np.asarray(psd_1d, dtype=float)
     slope = np.diff(np.log(c)) / np.diff(np.log(k))
     return PowerLaws(k, 2 * bin_integrals(k, c, 0), slope)
 
 
 def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
-    """Return the isotropic spectrum, averaged over annuli, from the two-sided spectrum of profiles.
+    """Return the 2D spectrum averaged over annuli, from the two-sided spectrum of profiles.
 
     Parameters
     ----------
@@ -169,11 +169,11 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
 
 def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
-    """Return each bin's contribution to M(q) (at, bin); the first includes the constant below."""
+    """Return each bin's contribution to M(q) (at, bin); the first includes the plateau below."""
     left = np.concatenate([[0.0], profile.edges[:-1]])
     right, level = profile.edges, np.append(profile.level[:1], profile.level)
     slope = np.append(0.0, profile.slope)
-    zero = at == 0  # the substitution fails there; the integrand is C_1D itself
+    zero = at == 0  # q = 0 needs no substitution k = q cosh t: integrate C_1D itself
     start = np.where(zero, right[0], at)[:, None]
     starts = np.arccosh(np.maximum(left / start, 1.0))
     stops = np.arccosh(np.maximum(right / start, 1.0))
@@ -193,13 +193,13 @@ def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
 def _tail(
     end: float, level: float, exponent: float, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the contribution of the power law above the last bin to M(q), and its derivative."""
+    """Return the contribution of the extrapolated tail to M(q), and its slope over the exponent."""
 
     def mean_square(s: float) -> np.ndarray:
         # imported late: scipy loads slowly
         from scipy.special import beta, betainc
 
-        a, ratio = 0.5 * (s - 1), np.maximum(at / end, 1e-4)  # below, M is constant to 1e-8
+        a, ratio = 0.5 * (s - 1), np.maximum(at / end, 1e-4)  # M is constant to 1e-8 below this
         scale = level * end * ratio ** (1 - s) * beta(a, 0.5)
         return scale * betainc(a, 0.5, np.minimum(ratio, 1.0) ** 2)
 

@@ -1,4 +1,4 @@
-"""Annuli of the wavenumber plane: merged where they are too uncertain, and reduced to nodes."""
+"""Annuli of the wavenumber plane: merging of uncertain ones, and reduction to nodes."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from tribolab.surface.spectra.abel import Annuli, PowerLaws
 from tribolab.surface.spectra.smooth_law import FittedLaw, smooth
 
 _CONFIDENCE = 0.95
-_LARGEST_ERROR = 0.25  # largest relative standard error of an annulus
+_LARGEST_ERROR = 0.25  # largest relative standard error of an annulus that is not merged further
 _TAIL_DECADES = 0.5
-_PLATEAU = 3.0  # an annulus wider than this is the result of a merge
+_PLATEAU = 3.0  # ratio of edges above which the first annulus must be the result of a merge
 
 
 def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the band of a mean power, chi-square with two degrees of freedom per value.
+    """Return the 95 % band of a mean power: chi-square, two degrees of freedom per value.
 
     Below one independent value the quantiles approach zero. There the logarithm of the band widens
     with the standard error, starting at the band of one value.
@@ -37,7 +37,7 @@ def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndar
 
 
 def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaws, np.ndarray]:
-    """Return the bins of a profile's spectrum as power laws with their mean square heights.
+    """Return the bins of a profile's spectrum as power laws, with their mean square heights.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaw
 def merge_annuli(
     measured: Annuli, behind: Annuli, relative: np.ndarray
 ) -> tuple[Annuli, np.ndarray]:
-    """Merge neighbouring annuli until each is accurate enough.
+    """Return annuli merged with their neighbours until each is accurate enough.
 
     Parameters
     ----------
@@ -116,14 +116,14 @@ def merge_annuli(
             "spectrum is negative; average more scans, or check that the surface is isotropic",
             function="psd_2d",
         )
-    ends[-1] = number  # the remainder at the end has no power of its own
+    ends[-1] = number  # the last annulus absorbs the remainder, which has no power of its own
     joined, smoothed = _merged_annuli(measured, ends), _merged_annuli(behind, ends)
     error = np.sqrt(((smoothed.sensitivity * relative) ** 2).sum(1)) / np.abs(smoothed.power)
     return joined, error
 
 
 def _merged_annuli(annuli: Annuli, ends: list[int]) -> Annuli:
-    """Return the merged annuli, after some of the edges between them were dropped."""
+    """Return the annuli that remain if only the edges with the numbers `ends` are kept."""
     starts = ends[:-1]
     return Annuli(
         annuli.edges[ends],
@@ -137,7 +137,7 @@ def _merged_annuli(annuli: Annuli, ends: list[int]) -> Annuli:
 def _node_values(
     annuli: Annuli, error: np.ndarray, fitted: FittedLaw
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Wavenumbers [1/m], C [m4] at the rms radius of each annulus, and its relative error."""
+    """Return wavenumbers [1/m] (rms radii of the annuli), C [m4] there, and its relative error."""
     low, high, mean = annuli.edges[:-1], annuli.edges[1:], annuli.mean
     node = np.sqrt(0.5 * (low**2 + high**2))
     if mean.size > 1:
@@ -164,7 +164,7 @@ def _node_values(
 
 
 def _mean_square(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
-    """Return the mean square height [m2] of the power laws between nodes, up to the last edge."""
+    """Return the mean square height [m2] of power laws between nodes, up to the outermost edge."""
     slope = np.log(c[-1] / c[-2]) / np.log(q[-1] / q[-2])
     grid, value = np.append(q, edges[-1]), np.append(c, c[-1] * (edges[-1] / q[-1]) ** slope)
     if edges[0] < q[0]:
@@ -177,7 +177,7 @@ def _mean_square(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
 def _balance_power(
     edges: np.ndarray, q: np.ndarray, c: np.ndarray, error: np.ndarray, whole: float
 ) -> np.ndarray:
-    """Adjust C at the nodes in proportion to their errors to conserve the mean square height [m2].
+    """Adjust C at the nodes, weighted by their errors, to conserve the mean square height [m2].
 
     With factors ``exp(s error^2)``: the smallest change in units of the standard errors.
     """

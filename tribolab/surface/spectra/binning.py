@@ -1,4 +1,4 @@
-"""Windows and logarithmic bins of Fourier lines, with their number of independent values."""
+"""Windows of Fourier transforms, and logarithmic bins of their lines."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Bins:
-    """Consecutive bins of the lines ``first`` ... ``last`` of a Fourier transform.
+    """Logarithmic bins of the lines of a Fourier transform.
 
     Parameters
     ----------
@@ -24,23 +24,23 @@ class Bins:
 
     @property
     def counts(self) -> np.ndarray:
-        """Lines in each bin."""
+        """Number of Fourier lines in each bin."""
         return np.diff(np.append(self.starts, self.stop))
 
     @property
     def edges(self) -> np.ndarray:
-        """Edges between the bins in units of lines, half way between two lines."""
+        """Edges of the bins in units of Fourier lines, half way between two lines."""
         return np.append(self.starts, self.stop) - 0.5
 
     @property
     def nodes(self) -> np.ndarray:
-        """Wavenumber of each bin in units of lines: the geometric mean of its lines."""
+        """Wavenumber of each bin in units of Fourier lines: the geometric mean of its lines."""
         logs = np.log(np.arange(self.starts[0], self.stop))
         return np.exp(np.add.reduceat(logs, self.starts - self.starts[0]) / self.counts)
 
 
 def log_bins(lines: int, lowest: int, per_decade: float, at_least: int = 4) -> Bins:
-    """Divide lines 1 ... `lines` into bins of equal logarithmic width.
+    """Return bins of equal logarithmic width for the Fourier lines 1 ... `lines`.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def window(points: int, flanks: float = 1.0) -> np.ndarray:
 
 
 def correlation(shift: float, flanks: float = 1.0) -> float:
-    """Return the squared correlation of two windowed Fourier lines, `shift` lines apart.
+    """Return the squared correlation of two Fourier lines that are `shift` lines apart.
 
     Notes
     -----
@@ -100,7 +100,7 @@ def correlation(shift: float, flanks: float = 1.0) -> float:
 def shape(
     bins: Bins, slope: np.ndarray, spacing: float, flanks: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ratio of each bin's mean to its node value, and its number of independent values.
+    """Return the mean over the node value of a power law in each bin, and its independent values.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Fourier transform of heights: windowed, in batches, at a fast length."""
+"""Fourier power of windowed heights, computed in chunks and with a fast length."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import numpy as np
 
 from tribolab.surface.spectra.binning import Bins
 
-_CHUNK_BYTES = 1 << 21  # a chunk and its transform fit into the cache
+_CHUNK_BYTES = 1 << 21  # bytes per chunk: a chunk and its transform fit into the processor's cache
 
 
 class Power(NamedTuple):
-    """Power of each bin, summed over the scans, and both sides of Parseval's relation."""
+    """Power of each bin, summed over the scans, and both sides of Parseval's equation."""
 
     bins: np.ndarray
     lines: float
@@ -42,7 +42,7 @@ def fast_length(points: int) -> int:
 def binned_power(
     height: np.ndarray, window: np.ndarray, bins: Bins, length: int, workers: int = 1
 ) -> Power:
-    """Sum of ``|H_k|^2`` over the lines of each bin and over all scans.
+    """Return ``|H_k|^2`` summed over the Fourier lines of each bin and over all scans.
 
     Parameters
     ----------
@@ -80,6 +80,6 @@ def binned_power(
         np.multiply(squares, squares, out=squares)
         lines += float(squares[:, :2].sum()) - float(squares[:, last:].sum())
         total += np.add.reduceat(squares, 2 * bins.starts, axis=-1).sum(0)
-        # the last line counts once, all others also for their mirror image
+        # every line but the last counts twice, for its mirror image
     lines += 2 * float(total.sum())
     return Power(total, lines / length, heights)

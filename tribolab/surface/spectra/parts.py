@@ -1,4 +1,4 @@
-"""Spectrum of profiles with long gaps, from their measured parts."""
+"""Spectrum of profiles with long gaps, computed from the measured parts between them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from tribolab.surface.gaps import GapEffect, gap_effect, logarithm
 from tribolab.surface.spectra.binning import Bins, window
 from tribolab.surface.spectra.fourier import binned_power
 
-_LONG_GAP = 1 / 32  # of a profile; a longer gap splits the profile instead of being bridged
-_MIN_PART = 0.25  # of the longest part; a shorter part does not resolve long waves
+_LONG_GAP = 1 / 32  # share of a profile; longer gaps split the profile, shorter ones are bridged
+_MIN_PART = 0.25  # share of the longest part; shorter parts do not resolve long waves
 
 
 class Transform(NamedTuple):
@@ -32,13 +32,13 @@ class Transform(NamedTuple):
         return binned_power(rows, taper, self.bins, self.length, self.workers).bins
 
     def first(self, points: int) -> int:
-        """Return the first bin whose waves are short compared with a part of so many points."""
+        """Return the first bin whose waves are short compared with a part of `points` points."""
         lowest = (self.order + 2) * self.length / points
         return int(np.searchsorted(self.bins.starts, lowest))
 
 
 class PartsSpectrum(NamedTuple):
-    """Power spectrum from the measured parts of profiles.
+    """Power spectrum of profiles, from the measured parts between their gaps.
 
     Sum over the scans, scaled to whole profiles (bin,); its relative standard error (bin,); number
     of the first bin whose waves are short compared with the parts.
@@ -50,7 +50,7 @@ class PartsSpectrum(NamedTuple):
 
 
 def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) -> GapEffect:
-    """Return the effect of gaps on the logarithm of the power of bridged profiles.
+    """Return the effect of bridged gaps on ln(power) of the profiles.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) 
 
 
 def long_gaps(missing: np.ndarray) -> np.ndarray:
-    """Return a mask of gaps that are long compared with the profile, like `missing` (scan, x).
+    """Return a mask (scan, x) of the missing heights in gaps long enough to split the profile.
 
     >>> row = np.zeros((1, 64), bool)
     >>> row[0, [5, 20, 21, 22]] = True
@@ -111,7 +111,7 @@ def long_gaps(missing: np.ndarray) -> np.ndarray:
 
 
 def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> PartsSpectrum | None:
-    """Return the spectrum of the parts between long gaps, each with its own window.
+    """Return the spectrum from the measured parts between long gaps, each with its own window.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         return None
     points = height.shape[1]
     whole = window(points, how.flanks)
-    # independent values of a transform without padding
+    # number of independent Fourier lines in each bin, without zero padding
     lines = how.bins.counts * points / how.length
     power, variance = np.zeros(lines.size), np.zeros(lines.size)
     first, unlike = 0, 1.0
@@ -163,7 +163,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         power += np.sum(each, axis=0)
         squares = np.sum(tapers, axis=0) ** 2
         weight = lines / np.mean(squares**2)
-        # the logarithm of a mean of few values scatters more than the mean and has longer tails
+        # allowance for the logarithm of few values: it scatters more and has longer tails
         variance += np.mean((squares - whole**2) ** 2) / lines * (1.0 + 1.5 / weight)
         first = max(first, how.first(min(stop - start for start, stop in parts)))
         unlike = max(unlike, _excess_scatter(np.array(each), np.array(tapers), lines, first))
@@ -179,14 +179,14 @@ def _stretches(truth: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _parts(gaps: np.ndarray) -> list[tuple[int, int]]:
-    """Return the intervals between gaps, without those that are short compared with the longest."""
+    """Return the intervals between gaps, without those much shorter than the longest."""
     every = _stretches(~gaps)
     longest = max(stop - start for start, stop in every)
     return [(start, stop) for start, stop in every if stop - start >= _MIN_PART * longest]
 
 
 def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np.ndarray]:
-    """Return the window of each part (x), with unit mean square over the whole profile."""
+    """Return the window of each part (x); their sum has unit mean square over the profile."""
     scale = np.sqrt(points / sum(stop - start for start, stop in parts))
     tapers = []
     for start, stop in parts:
@@ -197,7 +197,7 @@ def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np
 
 
 def _remove_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarray:
-    """Return heights minus the polynomial fitted to one part."""
+    """Return heights without the polynomial form fitted to one part of the profile."""
     x = np.linspace(-1.0, 1.0, part[1] - part[0])
     basis = np.polynomial.legendre.legvander(x, order)
     here = row[slice(*part)]
@@ -207,7 +207,7 @@ def _remove_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarr
 
 
 def _excess_scatter(powers: np.ndarray, tapers: np.ndarray, lines: np.ndarray, first: int) -> float:
-    """Return the factor by which spectra (part, bin) of parts differ more than Gaussian heights."""
+    """Return the factor by which the spectra of parts scatter more than for Gaussian heights."""
     known = np.arange(lines.size) >= first
     if len(powers) < 2 or not known.any():
         return 1.0

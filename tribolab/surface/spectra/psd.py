@@ -1,4 +1,4 @@
-"""Power spectra of measured profiles, and of the isotropic surface they belong to."""
+"""Power spectra of measured profiles, and of the isotropic surface with such profiles."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def psd_1d(
     flanks: float = 0.5,
     workers: int = 1,
 ) -> xr.Dataset:
-    """Return the 1D power spectrum of profiles, averaged over the scans, with its 95 % band.
+    """Return the 1D power spectrum averaged over profiles, with its 95 % band.
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ def psd_2d(
 
 
 def _prepare_scans(scans: xr.Dataset, form: str) -> xr.Dataset:
-    """Return scans with one dimension ``scan`` and without form, or raise an error."""
+    """Return scans without form along one dimension ``scan``; an error if they are unsuitable."""
     if not isinstance(scans, xr.Dataset):
         raise AnalysisError(
             "one dataset with scans of equal pitch and length is wanted, got a "

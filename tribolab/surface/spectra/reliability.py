@@ -1,4 +1,4 @@
-"""Range of wavenumbers in which a measured spectrum can be trusted, and its limits."""
+"""Trusted range of wavenumbers of a measured spectrum."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import xarray as xr
 
 from tribolab.units.conversion import to_si
 
-# A sphere that traces profiles of the reference surfaces loses less than 5 % of C_1D as long as
-# the rms curvature of all waves up to this one stays below this share of the tip's.
+# A spherical tip that traces profiles of the reference surfaces loses less than 5 % of C_1D up to
+# the wavenumber at which the cumulative rms curvature reaches this share of the tip's curvature.
 TIP_SHARE = 0.15
-_NOISE_MARGIN = 20.0  # ratio of C_1D to the noise floor: noise adds at most 5 %
-_FLOOR = 0.7  # the floor is taken between this share of the Nyquist wavenumber and its end
+_NOISE_MARGIN = 20.0  # least ratio of C_1D to the noise floor: noise then adds at most 5 %
+_FLOOR = 0.7  # the noise floor is taken from this share of the Nyquist wavenumber upwards
 _FILTER_LOSS = 0.05  # largest share of the power that a profile filter may have removed
 _GAUSS = np.log(2) / (2 * np.pi) ** 2  # ISO 16610-21: transmission exp(-_GAUSS (q cutoff)^2)
 
@@ -19,7 +19,7 @@ _GAUSS = np.log(2) / (2 * np.pi) ** 2  # ISO 16610-21: transmission exp(-_GAUSS 
 def tip_cutoff(
     wavenumber: np.ndarray, psd_1d: np.ndarray, widths: np.ndarray, tip_radius: float
 ) -> float:
-    """Return the wavenumber [1/m] above which a spherical tip no longer follows the profile.
+    """Return the wavenumber [1/m] above which a spherical tip cannot follow the profile.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def trusted_band(
     lowest: int,
     lost: float = float("inf"),
 ) -> tuple[np.ndarray, dict[str, float | str]]:
-    """Mark the trusted bins of a spectrum.
+    """Return a mask of the bins in which a spectrum can be trusted, and what limits the range.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def trusted_band(
     """
     q, c = spectrum.wavenumber.values, spectrum.psd_1d.values
     left, right = spectrum.wavenumber_low.values, spectrum.wavenumber_high.values
-    first = min(q.size - 1, 1 if lowest > 1 else 0)  # power lost to form removal is not noise
+    first = min(q.size - 1, 1 if lowest > 1 else 0)  # loss of power to form removal is not noise
     highs = {"Nyquist": float(right[-1]) / 2, "noise floor": noise_cutoff(q[first:], c[first:])}
     radius = scans.attrs.get("tip_radius_m") if tip_radius is None else tip_radius
     if radius is not None:

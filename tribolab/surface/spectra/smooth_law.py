@@ -1,4 +1,4 @@
-"""Smooth spectrum fitted to a measured one, from which its scatter is estimated."""
+"""Smooth spectrum fitted to a measured one, as the reference for its scatter."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import numpy as np
 
 from tribolab.surface.self_affine import SelfAffine, psd_1d
 
-_STIFFNESS = 1e3  # stiffness of the smoother: it averages over some ten bins
-_STARTS = (0.25, 0.5, 0.75)  # decades searched for the roll-off
+_STIFFNESS = 1e3  # stiffness of the smoothing, which averages over some ten bins
+_STARTS = (0.25, 0.5, 0.75)  # start values of the roll-off, as shares of the logarithmic range
 
 
 class FittedLaw(NamedTuple):
-    """Fitted plateau and power law, with the covariance of ln(roll-off) and the Hurst exponent."""
+    """Fitted plateau and power law, with the covariance of ln(roll-off) and Hurst exponent."""
 
     law: SelfAffine
     covariance: np.ndarray
 
     def spread(self, quantity: Callable[[SelfAffine], np.ndarray]) -> np.ndarray:
-        """Return the standard error of a quantity that depends on the fitted law."""
+        """Return the standard error of a quantity computed from the fitted law."""
         steps = []
         for name, scale in (("rolloff", self.law.rolloff), ("hurst", 1.0)):
             at = getattr(self.law, name)
@@ -32,7 +32,7 @@ class FittedLaw(NamedTuple):
 
 
 def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarray) -> FittedLaw:
-    """Return the plateau and power law whose profile spectrum fits a measured C_1D best.
+    """Return the plateau and power law whose profile spectrum best fits a measured C_1D.
 
     Parameters
     ----------
@@ -78,11 +78,11 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
     ]
     best = min(tried, key=lambda fit: fit.cost)
     plateau = float(np.exp(np.average(misfit(best.x), weights=weights)))
-    # reached if the surface does not follow the law
+    # factor above 1 if the surface does not follow the fitted law
     growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))
     rolloff, hurst = best.x
     jacobian = np.asarray(best.jac)
-    # parameters that the spectrum does not determine are uniformly distributed within the bounds
+    # prior: parameters are uniformly distributed between their bounds
     known = np.diag(12 / np.diff(bounds, axis=0)[0] ** 2)
     covariance = np.linalg.inv(jacobian.T @ jacobian / growth + known)
     return FittedLaw(law(rolloff, hurst, plateau), covariance)
@@ -91,7 +91,7 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
 def smooth(
     wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarray, law: SelfAffine
 ) -> np.ndarray:
-    """Smooth spectrum fitted to a scattering C_1D.
+    """Return a smooth spectrum fitted to a measured C_1D.
 
     Parameters
     ----------

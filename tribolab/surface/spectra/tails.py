@@ -1,4 +1,4 @@
-"""Skewness and kurtosis of profiles with a hole longer than half a sampling length.
+"""Skewness and kurtosis of profiles with a gap longer than half a sampling length.
 
 A bridge over such a hole is a straight line, which makes the other heights of that sampling length
 outliers. Both parameters then use measured heights only, from lengths with enough of them.
@@ -10,19 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-_MIN_MEASURED = 0.5  # share of a sampling length that must be measured
-_POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}  # for a normal process: order, and its variance
+_MIN_MEASURED = 0.5  # share of a sampling length that must have been measured
+_POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}  # moment's order, factor of its variance (Gaussian)
 
 
 class Tails(NamedTuple):
-    """Rsk or Rku of profiles (row), and its standard error due to holes."""
+    """Rsk or Rku of profiles (row), and its standard error due to gaps."""
 
     value: np.ndarray
     error: np.ndarray
 
 
 def long_holes(missing: np.ndarray) -> np.ndarray:
-    """Return a mask of profiles with a sampling length of which more than half is missing.
+    """Return a mask of profiles that lack more than half of any sampling length.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
         each = np.divide(
             moment, square ** (order / 2), where=square > 0, out=np.zeros(square.shape)
         )
-        with np.errstate(invalid="ignore"):  # profiles without measured heights
+        with np.errstate(invalid="ignore"):  # profiles without any measured height give NaN
             value = (weight * each).sum(axis=-1) / np.where(number > 0, number, np.nan)
             spread = (weight * (each - value[:, None]) ** 2).sum(axis=-1)
             spread /= np.where(number > 1.0, number - 1.0, np.nan)
@@ -94,7 +94,7 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
 
 
 def _autocorrelation(height: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """Return the autocorrelation of profiles at both positive and negative lags (row, lag)."""
+    """Return the autocorrelation of profiles at positive and negative lags (row, lag)."""
     size = height.shape[-1]
     rows = height.reshape(len(height), -1)
     every = there.reshape(len(there), -1).astype(float)
