@@ -26,7 +26,6 @@ _PRIMES = str.maketrans({"\u2032": "'", "\u2019": "'", "\u00b4": "'", "\u2033": 
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")  # behind "G' in"
 _IN = re.compile(r"\b(?:in|en)$")
 _BARE_UNIT = re.compile(r"(.+?)(?:/|\s(?:in|en)\s)\s*([^\s/][^\s]*)")  # E'/MPa, G' in Pa
-_LETTER = re.compile(r"[^\W\d_]")
 _COMMENT = re.compile(r"^\s*[#%]+\s?")
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
 _COMMA, _POINT = (re.compile(rf"(?<![\d{s}])\d+{s}\d+(?![\d{s}])") for s in (",", r"\."))
@@ -96,7 +95,7 @@ def find_table(
     workbook = path.suffix.lower() in _WORKBOOKS
     for rows, decimal in _workbook(path, sheet) if workbook else _text(path, longest):
         for place, row in enumerate(rows[:HEAD]):
-            if len(row) > _MAX_COLUMNS or not _LETTER.search("".join(row)):
+            if len(row) > _MAX_COLUMNS or not any(map(str.isalpha, "".join(row))):
                 continue  # a row of numbers names nothing
             columns = _columns(row, kind)
             seen |= dict.fromkeys(cell.strip() for cell in row if kind.concept(_bare(cell)[0]))

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.reading.content.model import Piece
+from tribolab.reading.scans.unit_words import WORD
 
 _MAX_TITLES = 5  # most titles named in a message
 _NUMBERS = re.compile(r"\d+(?:[.,]\d+)*")
-_LETTERS = re.compile(r"[^\W\d_]+")
 # titles of tables that were computed from another
 _VERSIONS = re.compile(
     r"(?i)\b(?:raw|primary|filtered|unfiltered|roughness|waviness|levell?ed|form|residual|"
@@ -52,7 +52,7 @@ def traces_of(path: Path, pieces: list[Piece]) -> list[Piece]:
 
 def _title(piece: Piece) -> str:
     """Return the last line with letters before a table."""
-    lines = [line.strip() for line in piece.before.splitlines() if _LETTERS.search(line)]
+    lines = [line.strip() for line in piece.before.splitlines() if WORD.search(line)]
     return lines[-1] if lines else ""
 
 

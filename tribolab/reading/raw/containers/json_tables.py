@@ -19,7 +19,6 @@ from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.unit_texts import is_unit_of_key, without_unit
 
-_JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
 _MIN_NUMBERS = 3  # smallest length of a column
 _ROWS = 5  # records inspected
 _DEEPEST = 12  # deepest nesting searched
@@ -45,7 +44,7 @@ def has_tables(text: str) -> bool:
     text
         Text of the whole file.
     """
-    return _JSON.match(text) is not None and bool(_tables(text)[0])
+    return bool(_tables(text)[0])
 
 
 def read_json(path: Path) -> RawFile:

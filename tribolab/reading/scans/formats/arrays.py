@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import ReadError, shown
-from tribolab.reading.lexicon.lexicon import keys_of, normalise_label, plain_words
+from tribolab.reading.lexicon.lexicon import keys_of, normalise_label, plain_words, words_of
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.scans.formats.named_arrays import NamedArray, read_arrays
 from tribolab.reading.scans.formats.named_units import unit_remedy
@@ -21,7 +21,6 @@ from tribolab.units.conversion import conversion
 from tribolab.units.spellings import unit_of_length
 
 _MIN_POINTS = 8  # least heights of a profile, or along one side of a map
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 _HEIGHTS = plain_words("height_array")
 _UNITS = frozenset(keys_of("unit"))
 _OF_RUNS = frozenset(
@@ -116,7 +115,7 @@ def _words(name: str) -> frozenset[str]:
     ['height', 'heightmap', 'map']
     """
     leaf = re.split(r"[./]", name)[-1]
-    return frozenset(normalise_label(word) for word in [*_WORD.findall(leaf), leaf])
+    return frozenset(normalise_label(word) for word in [*words_of(leaf), leaf])
 
 
 def _heights(path: Path, stored: list[NamedArray]) -> NamedArray | None:
