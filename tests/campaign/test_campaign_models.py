@@ -64,7 +64,7 @@ def outcome(campaign):
 @pytest.mark.slow
 def test_the_docs_name_every_table_and_folder_that_a_run_leaves(outcome):
     text = (SCHEMA.parents[1] / "docs/results.md").read_text("utf-8")
-    listed = text.partition("What the demo leaves behind")[2].partition("\n## ")[0]
+    listed = text.partition("Results, and how they are computed")[2].partition("\n## ")[0]
     tables = [path.name for path in (outcome.folder / "tables").glob("*.csv")]
     files = [path.name for path in outcome.folder.iterdir() if path.is_file()]
     folders = [f"{path.name}/" for path in outcome.folder.iterdir() if path.is_dir()]
@@ -375,7 +375,7 @@ def test_the_words_follow_the_residuals():
     assert "the residuals exceed the error bars and vary systematically with speed" in bad
     assert "one shear stress describes 100 µm/s to 10 mm/s" in bad
     assert "more than 10 % of the friction at 1 µm/s to 10 µm/s" in bad
-    assert "largest at 1 µm/s, where the measurement lies 0.2 above the model's 1" in bad
+    assert "largest at 1 µm/s, where the measurement is 0.2 above the model's 1" in bad
     both = judgement(
         described([0.2, 0.3, 0.01, 0.15, 0.2], valid_speed_low_m_s=1e-4, valid_speed_high_m_s=1e-4)
     )

@@ -64,7 +64,7 @@ def test_a_recorded_speed_is_used_and_compared_with_the_stated_one(tmp_path):
 def test_a_file_with_set_speeds_of_its_own_needs_none(tmp_path):
     column = '[[column]]\nquantity = "set_speed"\nname = "v"\n'
     [run] = analysed(tmp_path, DIALECT + column, extra=[("v", 0.2)]).runs
-    assert not run.done and "leave sliding_speed out" in run.reason
+    assert not run.done and "remove sliding_speed" in run.reason
 
 
 FORCE_ALONE = dialect_of("plain", time="t", friction_force="F")

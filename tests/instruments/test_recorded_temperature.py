@@ -101,5 +101,5 @@ def test_viscous_heating_is_reported_above_two_kelvin(contact, load):
     )
     assert _heating(contact, load, curve, 1e-3) == []
     (finding,) = _heating(contact, load, curve, 10.0)
-    assert finding.severity == "suspect" and "heats itself" in finding.message
+    assert finding.severity == "suspect" and "viscous heating" in finding.message
     assert "10 m/s" in finding.message

@@ -343,7 +343,7 @@ def test_threads_give_what_this_process_gives_but_for_a_run_that_kills_its_worke
 
 
 def test_results_in_which_nothing_could_be_done_replace_nothing(original, tmp_path):
-    with Losing(RUNS) as executor, pytest.raises(WorkerDied, match="no run could be done"):
+    with Losing(RUNS) as executor, pytest.raises(WorkerDied, match="no run could be analysed"):
         process(load_campaign(original), tmp_path, executor=executor)
 
 

@@ -95,7 +95,11 @@ def test_points_over_the_mean_speed_are_results_and_steps_that_differ_are_told(
     friction = friction_coefficient(run, segments)
     assert friction.sizes["segment"] == 90
     np.testing.assert_allclose(friction.sliding_speed[:3], [1.5, 1.232, 1.0125], rtol=0.01)
-    said = [n for n in notices_of("curve", run, segments, friction) if "step to step" in n.message]
+    said = [
+        n
+        for n in notices_of("curve", run, segments, friction)
+        if ("differs between steps") in n.message
+    ]
     assert [notice.severity for notice in said] == ["suspect"] * told
 
 

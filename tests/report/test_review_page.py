@@ -181,7 +181,7 @@ def test_a_campaign_is_reviewed_by_keyboard_alone(browser, original, tmp_path):
         page.key("a", "a")
         said_why(page, there, "the other strokes are sound")
         page.key("d", "d")
-        page.wait(f"{BAR}.includes('No run is in doubt')")
+        page.wait(f"{BAR}.includes('No run is suspect or failed')")
         # closed and opened again, nothing is lost
         page.go(f"{page_file}?again#run-{NUMBERS[FROZEN]}")
         here = drawn(page, FROZEN)

@@ -70,9 +70,7 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
     )
     for condition in conditions:
         for name in condition.runs:
-            text = (
-                "only one condition was repeated, and only twice: how well runs repeat is unknown"
-            )
+            text = "only one condition was repeated, and only twice, so repeatability is unknown"
             checks[name] = _row("skipped", text) if alone else _row("pass", sound)
     for odd in odd_repeats([np.log(condition.levels) for condition in conditions]):
         runs = conditions[odd.condition].runs

@@ -137,4 +137,4 @@ def _refuse_if_all_died(came: Iterable[RunHandle]) -> None:
     """Raise if every worker died, so that empty results do not replace good ones."""
     done = [run.outcome for run in came if not run.outcome.reused]
     if done and all(outcome.error == WorkerDied.__name__ for outcome in done):
-        raise WorkerDied(f"no run could be done: of {done[0].name}, {done[0].reason}")
+        raise WorkerDied(f"no run could be analysed: {done[0].name}: {done[0].reason}")

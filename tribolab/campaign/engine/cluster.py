@@ -34,9 +34,9 @@ def gone(why: str, done: int, of: int) -> str:
     """Return the error for a lost cluster, with the reason and the finished work."""
     progress = f"; {done} of {of} pieces of work were done" if of else ""
     return (
-        f"the Dask cluster is lost: {why}{progress}. Nothing was written, results of before are as "
-        "they were; start scheduler and workers again and repeat the command, leave --scheduler "
-        "out, or add --local-if-lost"
+        f"the Dask cluster is lost: {why}{progress}. Nothing was written; earlier results are "
+        "unchanged. Restart scheduler and workers and repeat the command, or omit --scheduler, or "
+        "add --local-if-lost"
     )
 
 
@@ -57,7 +57,7 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
         from distributed.comm.addressing import get_address_host_port
     except ImportError as error:
         raise ConfigError(
-            "a scheduler wants Dask, which is not installed: pip install 'tribolab[cluster]'"
+            "a scheduler requires Dask, which is not installed: pip install 'tribolab[cluster]'"
         ) from error
 
     # a client that never connected waits long in its __del__, and forever if a web server answers

@@ -120,7 +120,7 @@ def workers(
         return
     jobs = default_jobs() if jobs is None else jobs
     if jobs < 1:
-        raise ConfigError(f"jobs is {jobs}; it wants a number of processes, 1 or more")
+        raise ConfigError(f"jobs is {jobs}; it must be a number of processes, 1 or more")
     if jobs == 1:
         yield None
         return

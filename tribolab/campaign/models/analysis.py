@@ -166,8 +166,9 @@ def _heating(contact: Contact, load: float, computed: xr.Dataset, fastest: float
     if rise <= MAX_VISCOUS_HEATING.value:
         return []
     text = (
-        f"the liquid heats itself by some {rise:.2g} K at {speed_text(fastest)}: its viscosity is "
-        "lower there than the model's. Leave these speeds out (fit_speeds), or cool"
+        f"viscous heating of the liquid is about {rise:.2g} K at {speed_text(fastest)}, so its "
+        "viscosity is lower than in the model. Exclude these speeds (fit_speeds), or cool the "
+        "contact"
     )
     return [Finding("suspect", text)]
 

@@ -226,7 +226,7 @@ def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
     own = signals.attrs.get("set_speed_m_s", speed)
     if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):
         raise ConfigError(
-            f"{signals.attrs['source']}: the file says its set speed itself; "
-            "leave sliding_speed out of its [[run]]"
+            f"{signals.attrs['source']}: the file states its set speed; remove sliding_speed from "
+            "its [[run]]"
         )
     return {"set_speed_m_s": speed, "set_speed_source": "campaign file"}

@@ -119,12 +119,15 @@ def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
             f"Prony series of {relaxations}, {stiffness / 1e6:g} MPa at rest",
             np.geomspace(*ends, count),
         )
-    text = "rubber friction is computed with a stand-in modulus: an order of magnitude only"
+    text = (
+        "rubber friction is computed with the modulus of a typical PDMS, so it is only an order "
+        "of magnitude"
+    )
     findings.append(Finding("note", text))
     network = replace(PDMS_STAND_IN, relaxed=stiffness)
     return _Rubber(
         network,
-        f"Stand-in of a PDMS network for orders of magnitude: {stiffness / 1e6:g} MPa at "
+        f"Typical PDMS network, for orders of magnitude only: {stiffness / 1e6:g} MPa at "
         f"rest, {network.unrelaxed / 1e9:g} GPa as a glass, fractional Zener with tau = "
         f"{network.relaxation_time:g} s and exponent {network.exponent:g}",
         np.geomspace(1e-2, 1e13, 15 * _PER_DECADE + 1),

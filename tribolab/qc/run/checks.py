@@ -88,7 +88,7 @@ def check_run(
     >>> run = xr.Dataset({"friction_force": ("time", force)}, {"time": np.arange(2000) / 100})
     >>> found = check_run(run.assign(sliding_velocity=("time", np.full(2000, 1e-3))))
     >>> found.table.query("check == 'spikes'").message.item()
-    '1 single sample is an outlier, t = 7 s (sample 700)'
+    '1 sample is an isolated outlier, t = 7 s (sample 700)'
     """
     for name in skip:
         if name not in checks:

@@ -117,7 +117,7 @@ def judgement(fit: xr.Dataset) -> str:
         )
     side = "above" if off[worst] > 0 else "below"
     parts.append(
-        f"largest at {speed_text(speed[worst])}, where the measurement lies "
+        f"largest at {speed_text(speed[worst])}, where the measurement is "
         f"{number(abs(off[worst]), 2)} {side} the model's {number(mu[worst] - off[worst])}"
     )
     return "; ".join(parts)

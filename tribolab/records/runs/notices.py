@@ -107,7 +107,7 @@ def notices_of(
         say("note", "friction", f"offset of the force: {offset}")
     if (track := position_range(segments)) is not None:
         low, high = (f"{1e3 * end:.4g}" for end in track)
-        text = f"what lies outside positions {low} to {high} mm of each stroke"
+        text = f"everything outside positions {low} to {high} mm of each stroke"
         say("note", STROKE_ENDS, text)
     about, reading = (
         SegmentAttributes.from_attrs(segments.attrs),
@@ -116,7 +116,7 @@ def notices_of(
     if (share := about.stroke_middle) > 0 and segments.sizes["segment"]:
         whole, used = times_of_strokes(segments)
         strokes = many(segments.sizes["segment"], "stroke")
-        text = f"what lies outside the middle {percent(share)} of the way of each of {strokes}"
+        text = f"everything outside the middle {percent(share)} of each of {strokes}"
         slow = " (at the ends the contact is slow)" if (whole - used) / whole > 1 - share else ""
         say("note", STROKE_ENDS, f"{text}: {duration(whole - used)} of {duration(whole)}{slow}")
     for entry in left_out(segments):
@@ -180,12 +180,12 @@ def distance_to_critical(slip: xr.Dataset) -> str:
         return ""
     stated = f"stiffness of the rig {rig:.4g} N/m"
     if (kinds == CLASSES[0]).all():
-        return f"{stated}: above the critical stiffness, as friction is steady at all speeds"
+        return f"{stated}: above the critical stiffness, because friction is steady at all speeds"
     steepest = slip["loading_stiffness"].values
     if (steepest > limits.MIN_SLOPE_OVER_STIFFNESS.value * rig).any():
         return (
             f"{stated}, but the force rises by {np.nanmax(steepest):.4g} N/m during sticks, which "
-            "no rig so soft allows. Check stiffness, and the gain of the force"
+            "is impossible with such a soft rig. Check the stiffness and the gain of the force"
         )
     low, high = (slip[f"critical_stiffness_{end}"].values for end in ("low", "high"))
     known = np.isfinite(low)

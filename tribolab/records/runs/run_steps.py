@@ -26,8 +26,8 @@ def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
     --------
     >>> cold = xr.Dataset({"sliding_speed": ("segment", [1.0, 2.0, 4.0] * 2)})
     >>> cold["step"] = "segment", [1, 1, 1, 2, 2, 2]
-    >>> steps_that_differ(cold, np.array([0.10, 0.08, 0.06, 0.13, 0.10, 0.08]))[:47]
-    'friction at one speed differs from step to step'
+    >>> steps_that_differ(cold, np.array([0.10, 0.08, 0.06, 0.13, 0.10, 0.08]))[:48]
+    'friction at the same speed differs between steps'
     >>> steps_that_differ(cold, np.array([0.10, 0.08, 0.06, 0.10, 0.08, 0.06]))
     ''
     """
@@ -44,8 +44,8 @@ def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
     steps = np.unique(step[np.isfinite(step)]).size
     usual = percent(float(np.median(apart)))
     return (
-        "friction at one speed differs from step to step (temperature, surface?), usually by "
+        "friction at the same speed differs between steps (temperature, surface?), typically by "
         f"{usual}, at "
-        f"{many(len(apart), 'speed')} of {many(steps, 'step')}: the curve is a mean "
-        "of them, tables/friction.csv has each"
+        f"{many(len(apart), 'speed')} of {many(steps, 'step')}. The curve shows their mean; "
+        "tables/friction.csv lists each"
     )

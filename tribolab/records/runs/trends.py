@@ -71,8 +71,8 @@ tell drift from noise'
         return ""
     size = f"{'+' if largest > 0 else ''}{percent(largest)}"
     return (
-        f"Trend undecided in {number} of {many(total, 'segment')}, at most {size} along one "
-        f"(run {where}): too short a record to tell drift from noise"
+        f"Trend undecided in {number} of {many(total, 'segment')}, at most {size} along one (run "
+        f"{where}): the record is too short to distinguish drift from noise"
     )
 
 

@@ -6,14 +6,13 @@ import math
 
 _STEEP = (
     "not a self-affine fractal over this range, for which H lies between 0 and 1. The spectrum "
-    "falls faster than q to the −4, so the slope of the surface stays finite however short the "
-    "waves are that count: it is smooth (differentiable) at short distances, where heights part "
-    "in proportion to the distance. H says how steep the spectrum is, and no longer how roughness "
-    "grows with length"
+    "falls faster than q to the −4, so the slope of the surface stays finite even if "
+    "shorter waves are included: the surface is smooth (differentiable) at short distances. H then "
+    "describes only the steepness of the spectrum, not how roughness grows with length"
 )
 _OPEN = (
-    "not told from 1: within its error the surface may be a self-affine fractal (H below 1), or "
-    "one whose slope stays finite however short the waves are that count (above 1)"
+    "not distinguishable from 1: within its error, the surface may be a self-affine fractal (H "
+    "below 1) or a surface with a finite slope at short wavelengths (H above 1)"
 )
 _SIGMAS = 2.0  # standard errors by which an exponent must exceed 1
 
@@ -46,7 +45,7 @@ def hurst_verdict(hurst: float | None, error: float | None = None) -> str:
     >>> hurst_verdict(0.8)
     ''
     >>> hurst_verdict(1.02, 0.02).partition(":")[0]
-    'not told from 1'
+    'not distinguishable from 1'
     >>> hurst_verdict(1.19).partition(",")[0]
     'not a self-affine fractal over this range'
     """

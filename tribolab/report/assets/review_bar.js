@@ -69,7 +69,7 @@ report.reviewing = (() => {
     const from = current ? every.indexOf(current) : by > 0 ? -1 : every.length;
     const next = every.map((_, k) => every[(from + by * (k + 1) + 2 * every.length) % every.length])
       .find((one) => DOUBT.includes(one.dataset.status) && !decided(one.dataset.run));
-    if (!next) return say("No run is in doubt.");
+    if (!next) return say("No run is suspect or failed.");
     current = next;
     if (report.view.anchor === next.id) await report.goTo(next.id);
     else report.view.go(next.id);
