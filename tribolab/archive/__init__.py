@@ -7,15 +7,6 @@ from typing import TYPE_CHECKING
 from tribolab.core.public_names import loaded_on_use
 
 if TYPE_CHECKING:
-    from tribolab.archive.packing import pack
+    from tribolab.archive.packing import pack as pack
 
-__all__ = [
-    "pack",
-]
-
-__getattr__, __dir__ = loaded_on_use(
-    __name__,
-    {
-        "pack": "packing",
-    },
-)
+__getattr__, __dir__, __all__ = loaded_on_use(__name__, __file__)

@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING
 from tribolab.core.public_names import loaded_on_use
 
 if TYPE_CHECKING:
-    from tribolab.campaign.settings.load import load_campaign
-    from tribolab.campaign.settings.review import load_review
+    from tribolab.campaign.settings.load import load_campaign as load_campaign
+    from tribolab.campaign.settings.review import load_review as load_review
 
-__all__ = [
-    "load_campaign",
-    "load_review",
-]
-
-__getattr__, __dir__ = loaded_on_use(
-    __name__,
-    {
-        "load_campaign": "settings.load",
-        "load_review": "settings.review",
-    },
-)
+__getattr__, __dir__, __all__ = loaded_on_use(__name__, __file__)

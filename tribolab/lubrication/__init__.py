@@ -7,32 +7,11 @@ from typing import TYPE_CHECKING
 from tribolab.core.public_names import loaded_on_use
 
 if TYPE_CHECKING:
-    from tribolab.lubrication.factors import flow_factors
-    from tribolab.lubrication.film import film_profile
-    from tribolab.lubrication.parameters import Interface, Solver
-    from tribolab.lubrication.relative_factors import relative_flow_factors
-    from tribolab.lubrication.stribeck import with_shear_stress
-    from tribolab.lubrication.viscosity import liquid_viscosity
+    from tribolab.lubrication.factors import flow_factors as flow_factors
+    from tribolab.lubrication.film import film_profile as film_profile
+    from tribolab.lubrication.parameters import Interface as Interface, Solver as Solver
+    from tribolab.lubrication.relative_factors import relative_flow_factors as relative_flow_factors
+    from tribolab.lubrication.stribeck import with_shear_stress as with_shear_stress
+    from tribolab.lubrication.viscosity import liquid_viscosity as liquid_viscosity
 
-__all__ = [
-    "Interface",
-    "Solver",
-    "film_profile",
-    "flow_factors",
-    "liquid_viscosity",
-    "relative_flow_factors",
-    "with_shear_stress",
-]
-
-__getattr__, __dir__ = loaded_on_use(
-    __name__,
-    {
-        "Interface": "parameters",
-        "Solver": "parameters",
-        "film_profile": "film",
-        "flow_factors": "factors",
-        "liquid_viscosity": "viscosity",
-        "relative_flow_factors": "relative_factors",
-        "with_shear_stress": "stribeck",
-    },
-)
+__getattr__, __dir__, __all__ = loaded_on_use(__name__, __file__)

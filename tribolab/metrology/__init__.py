@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING
 from tribolab.core.public_names import loaded_on_use
 
 if TYPE_CHECKING:
-    from tribolab.metrology.budget import uncertainty_budget
-    from tribolab.metrology.dead_weight import dead_weight_gain
+    from tribolab.metrology.budget import uncertainty_budget as uncertainty_budget
+    from tribolab.metrology.dead_weight import dead_weight_gain as dead_weight_gain
 
-__all__ = [
-    "dead_weight_gain",
-    "uncertainty_budget",
-]
-
-__getattr__, __dir__ = loaded_on_use(
-    __name__,
-    {
-        "dead_weight_gain": "dead_weight",
-        "uncertainty_budget": "budget",
-    },
-)
+__getattr__, __dir__, __all__ = loaded_on_use(__name__, __file__)

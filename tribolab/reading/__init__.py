@@ -7,20 +7,10 @@ from typing import TYPE_CHECKING
 from tribolab.core.public_names import loaded_on_use
 
 if TYPE_CHECKING:
-    from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
-    from tribolab.reading.unknown.proposal.draft import draft_dialect
+    from tribolab.reading.netcdf.netcdf import (
+        read_netcdf as read_netcdf,
+        write_netcdf as write_netcdf,
+    )
+    from tribolab.reading.unknown.proposal.draft import draft_dialect as draft_dialect
 
-__all__ = [
-    "draft_dialect",
-    "read_netcdf",
-    "write_netcdf",
-]
-
-__getattr__, __dir__ = loaded_on_use(
-    __name__,
-    {
-        "draft_dialect": "unknown.proposal.draft",
-        "read_netcdf": "netcdf.netcdf",
-        "write_netcdf": "netcdf.netcdf",
-    },
-)
+__getattr__, __dir__, __all__ = loaded_on_use(__name__, __file__)

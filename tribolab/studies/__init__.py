@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from tribolab.core.public_names import loaded_on_use
 
 if TYPE_CHECKING:
-    from tribolab.studies.comparison import compare_with_paper
+    from tribolab.studies import xu2026 as xu2026
+    from tribolab.studies.comparison import compare_with_paper as compare_with_paper
 
-__all__ = ["compare_with_paper", "xu2026"]
-
-
-def __getattr__(name: str) -> Any:
-    if name == "compare_with_paper":
-        return importlib.import_module("tribolab.studies.comparison").compare_with_paper
-    if name == "xu2026":
-        return importlib.import_module("tribolab.studies.xu2026")
-    raise AttributeError(f"module 'tribolab.studies' has no attribute '{name}'")
+__getattr__, __dir__, __all__ = loaded_on_use(__name__, __file__)
