@@ -5,7 +5,22 @@ import xarray as xr
 from scipy.special import ndtr
 
 from tribolab.contact.adhesion_balance import Interface
-from tribolab.contact.first_passage import survival
+from tribolab.contact.first_passage import Diffusion
+
+
+def survival(start, boundary, time) -> np.ndarray:
+    """Probability that a diffusion has not yet reached a boundary (k, n) or (n) below it."""
+    diffusion = Diffusion.over(time)
+    origin = np.atleast_1d(np.asarray(start, dtype=float))
+    height = np.atleast_2d(np.asarray(boundary, dtype=float))
+    levels = ((height[:, 1:] + height[:, :-1]) / 2).T
+    levels = np.ascontiguousarray(np.broadcast_to(levels, (levels.shape[0], origin.size)))
+    losses = np.zeros_like(levels)
+    for step in range(levels.shape[0]):
+        losses[step] = diffusion.lost(step, levels[step], origin, levels, losses)
+    result = np.ones((origin.size, diffusion.time.size))
+    result[:, 1:] -= np.cumsum(losses, axis=0).T
+    return result[0] if np.ndim(start) == 0 and np.ndim(boundary) == 1 else result
 
 
 def flat_then_power(hurst=0.9, rolloff=1e5, slope=0.3, low=1e3, high=1e9) -> xr.Dataset:

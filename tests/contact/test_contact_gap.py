@@ -8,10 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
-from tribolab.contact.gap import gap_averages, gap_distribution
+from tribolab.contact.gap import gap_distribution
 from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import rms_roughness, rms_slope
+
+
+def gap_averages(distribution, function, at_contact=0.0, above_cutoff=False):
+    """Average of a function of the gap, over open and closed area."""
+    weight, gap = distribution["gap_weight"], distribution["gap"]
+    if above_cutoff:
+        weight = weight.where(gap >= distribution.attrs["cutoff_m"], 0.0)
+    open_part = (weight * function(gap)).sum("gap")
+    return open_part + distribution["contact_area_ratio"] * at_contact
+
 
 VARIANTS = ("flow", "plain")
 # up to A/A0 of about 0.8

@@ -13,7 +13,6 @@ from tribolab.surface.moments import (
     band,
     bin_integrals,
     cumulative_at,
-    cumulative_moment,
     refine_nodes,
     rms_roughness,
     rms_slope,
@@ -71,19 +70,6 @@ def test_an_all_zero_spectrum_has_no_roughness():
     flat = spectrum([1.0, 2.0, 3.0], np.zeros(3))
     assert rms_roughness(flat) == 0
     assert rms_slope(flat) == 0
-
-
-def test_cumulative_moment_is_the_moment_of_every_shorter_band():
-    rng = np.random.default_rng(1)
-    q = np.sort(rng.uniform(1e2, 1e6, 30))
-    psd = spectrum(q, rng.lognormal(size=30))
-    moments = cumulative_moment(psd, 3)
-    assert moments.dims == ("wavenumber",)
-    assert moments.attrs["units"] == "1"
-    assert cumulative_moment(psd, 1).attrs["units"] == "m2"
-    for last in range(2, 31):
-        short = psd.isel(wavenumber=slice(0, last))
-        assert spectral_moment(short, 3) == pytest.approx(float(moments[last - 1]), rel=1e-12)
 
 
 @properties

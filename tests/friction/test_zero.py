@@ -9,7 +9,6 @@ from zero_cases import BOTH, LOAD, MU, SPEED, analysed, doubts, off, programme
 
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
-from tribolab.friction.coefficient.friction_loop import half_loops
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.zero.middles import middles
 from tribolab.friction.zero.offsets import wander
@@ -32,7 +31,7 @@ def test_linear_drift_of_the_zero_over_six_pairs_leaves_nothing(total):
     raw = friction["friction_force"] + friction["direction"] * friction["friction_force_offset"]
     biased = (raw.values[0] + raw.values[1]) / 2 / LOAD
     assert biased - MU == pytest.approx(-passed / 2 / LOAD, rel=0.02)
-    assert half_loops(friction)["half_loop"].values == pytest.approx([MU * LOAD] * 6, abs=1e-3)
+    assert friction["half_loop"].values == pytest.approx([MU * LOAD] * 12, abs=1e-3)
     assert (np.abs(friction["trend_change"].values) < 1e-4).all()
     assert (friction["friction_coefficient_sem"].values < 0.002).all()
 

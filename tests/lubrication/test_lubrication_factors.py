@@ -7,6 +7,7 @@ import pytest
 from contact_cases import SURFACES, properties, reference_psd, self_affine, target
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from patir_cheng import patir_cheng
 from scipy.optimize import brentq
 from scipy.special import erfinv
 
@@ -16,7 +17,6 @@ from tribolab.contact.separation import separation_table
 from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.fit.theory_error import factors_of_numerics, pressure_of_numerics
 from tribolab.lubrication.factors import FACTORS, FlowFactors, flow_factors, smooth_factors
-from tribolab.lubrication.patir_cheng import patir_cheng
 from tribolab.surface.moments import rms_roughness, rms_slope
 
 

@@ -7,12 +7,12 @@ import pandas as pd
 import pytest
 import xarray as xr
 from contact_cases import CONTACT, reference_psd
+from patir_cheng import patir_cheng
 
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.fit.model_error import model_uncertainty
 from tribolab.lubrication.film import film_profile
-from tribolab.lubrication.patir_cheng import patir_cheng
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.studies import xu2026
 

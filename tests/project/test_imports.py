@@ -22,7 +22,7 @@ def test_a_name_that_left_the_top_level_says_where_it_is():
     with pytest.warns(FutureWarning, match=r"tl\.adhesion is now tl\.contact\.adhesion") as said:
         assert tribolab.adhesion is tribolab.contact.adhesion
     assert [warning.filename for warning in said] == [__file__]
-    former = "adhesion read_modulus FitSettings psd_1d half_loops objections load_campaign pack"
+    former = "adhesion read_modulus FitSettings psd_1d Decision objections load_campaign pack"
     for name in former.split():
         with pytest.warns(FutureWarning, match=rf"tl\.{name} is now tl\."):
             assert getattr(tribolab, name) is not None

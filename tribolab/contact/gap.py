@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -69,7 +69,7 @@ def gap_distribution(
     gamma
         Elastic-energy reduction factor [1] of the mean separation.
     cutoff
-        Gap [m] below which `gap_averages` can omit gaps; an edge of the grid.
+        Gap [m] that is an edge of the grid, so that averages can omit smaller gaps.
 
     Returns
     -------
@@ -192,46 +192,6 @@ def _distribution(
         },
         coords={**over.coords, "gap": ("gap", gap)},
     )
-
-
-def gap_averages(
-    distribution: xr.Dataset,
-    function: Callable[[xr.DataArray], xr.DataArray],
-    at_contact: float = 0.0,
-    above_cutoff: bool = False,
-) -> xr.DataArray:
-    """Return the average of a function of the gap, over the area with and without contact.
-
-    Parameters
-    ----------
-    distribution
-        From `gap_distribution`.
-    function
-        Function of the gap u [m] (gap); may include arrays over the dims of the pressure.
-    at_contact
-        Value of the function in contact; its weight is A/A0.
-    above_cutoff
-        Whether to omit gaps below the distribution's cut-off, as needed for <1/u>.
-
-    Returns
-    -------
-    xarray.DataArray
-        <f(u)> over the dims of the pressure.
-
-    Examples
-    --------
-    >>> import numpy as np, xarray as xr
-    >>> q = np.array([1e3, 1e5, 1e9])
-    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", 1e-2 * q**-4.0)}, coords={"wavenumber": q})
-    >>> gaps = gap_distribution([1e3, 1e5], psd, "2 MPa")
-    >>> gap_averages(gaps, lambda u: u**0, at_contact=1).round(3).values  # all of the area
-    array([1., 1.])
-    """
-    weight, gap = distribution["gap_weight"], distribution["gap"]
-    if above_cutoff:
-        weight = weight.where(gap >= distribution.attrs["cutoff_m"], 0.0)
-    open_part = (weight * function(gap)).sum("gap")
-    return (open_part + distribution["contact_area_ratio"] * at_contact).rename("gap_average")
 
 
 def _openings(

@@ -9,9 +9,6 @@ from tribolab.core.public_names import loaded_on_use
 if TYPE_CHECKING:
     from tribolab.fit.fit_settings import FitSettings as FitSettings
     from tribolab.fit.input_error import model_inputs as model_inputs
-    from tribolab.fit.joint.comparison import (
-        compare_shear_stress_models as compare_shear_stress_models,
-    )
     from tribolab.fit.joint.fit import fit_shear_stress_jointly as fit_shear_stress_jointly
     from tribolab.fit.joint.inputs import DryFriction as DryFriction
     from tribolab.fit.joint.priors import JointPriors as JointPriors

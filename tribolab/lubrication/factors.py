@@ -52,7 +52,7 @@ class Factors(NamedTuple):
 class FlowFactors:
     """Flow and friction factors of one surface over mean separation; trivial if smooth.
 
-    Made by `flow_factors`, `smooth_factors` or `tribolab.lubrication.patir_cheng.patir_cheng`.
+    Made by `flow_factors` or `smooth_factors`.
 
     Parameters
     ----------

@@ -123,44 +123,6 @@ def gauge_study(values: ArrayLike) -> GaugeStudy:
     )
 
 
-@dataclass(frozen=True)
-class RangeStudy:
-    """Standard deviations from averages and ranges: equipment, appraisers, gauge and parts."""
-
-    equipment: float
-    appraisers: float
-    gauge: float
-    parts: float
-
-    @property
-    def study_variation(self) -> float:
-        """Standard deviation of the measurement relative to that of all values."""
-        return self.gauge / math.hypot(self.gauge, self.parts)
-
-
-def average_and_range(values: ArrayLike) -> RangeStudy:
-    """Return the standard deviations of a balanced study from averages and ranges.
-
-    Parameters
-    ----------
-    values
-        (part, appraiser, trial), as for `gauge_study`.
-
-    Notes
-    -----
-    A mean range divided by the expected range of as many normal values, d2; the single ranges of
-    appraisers and of parts are divided by d2* of one sample, the root of d2^2 + d3^2 (Duncan 1986).
-    """
-    y = _check_balance(values)
-    parts, appraisers, trials = y.shape
-    equipment = float(np.ptp(y, axis=2).mean() / _range_of_normal(trials)[0])
-    span_appraisers = np.ptp(y.mean(axis=(0, 2))) / _single_range(appraisers)
-    between = max(0.0, float(span_appraisers**2 - equipment**2 / (parts * trials)))
-    span_parts = float(np.ptp(y.mean(axis=(1, 2))) / _single_range(parts))
-    gauge = math.hypot(equipment, math.sqrt(between))
-    return RangeStudy(equipment, math.sqrt(between), gauge, span_parts)
-
-
 def _check_balance(values: ArrayLike) -> Array:
     y = np.asarray(values, dtype=float)
     if y.ndim != 3 or min(y.shape) < 2 or not np.isfinite(y).all():
@@ -169,23 +131,3 @@ def _check_balance(values: ArrayLike) -> Array:
             f"got {' x '.join(map(str, y.shape))}"
         )
     return y
-
-
-def _single_range(size: int) -> float:
-    mean, deviation = _range_of_normal(size)
-    return math.hypot(mean, deviation)
-
-
-def _range_of_normal(size: int) -> tuple[float, float]:
-    """Return the mean d2 and standard deviation d3 of the range of standard normal values."""
-    low = np.linspace(-8.5, 8.5, 1201)
-    step = low[1] - low[0]
-    cdf, pdf = special.ndtr(low), np.exp(-(low**2) / 2) / np.sqrt(2 * np.pi)
-    mean = float((1 - (1 - cdf) ** size - cdf**size).sum() * step)
-    # joint density of the smallest value and the largest one
-    span = np.maximum(cdf[None, :] - cdf[:, None], 0.0)
-    joint = size * (size - 1) * span ** (size - 2) * pdf[:, None] * pdf[None, :]
-    joint *= np.triu(np.ones_like(span), 1)
-    width = low[None, :] - low[:, None]
-    square = float((joint * width**2).sum() * step**2)
-    return mean, math.sqrt(max(0.0, square - mean**2))

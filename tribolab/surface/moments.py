@@ -161,48 +161,6 @@ def spectral_moment(psd: xr.Dataset, order: float) -> float:
     return float(bin_integrals(*spectrum_arrays(psd), order).sum())
 
 
-def cumulative_moment(psd: xr.Dataset, order: float) -> xr.DataArray:
-    """Return the cumulative moment int_{q0}^{q} q'^order C dq' at each wavenumber of a spectrum.
-
-    Parameters
-    ----------
-    psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber).
-    order
-        Exponent of q.
-
-    Returns
-    -------
-    xarray.DataArray
-        The moment [m^(3 - order)] (wavenumber), zero at the first, without the factor 2 pi.
-
-    Raises
-    ------
-    AnalysisError
-        If the spectrum is invalid, see `spectrum_arrays`.
-
-    Examples
-    --------
-    >>> import numpy as np, xarray as xr
-    >>> q = np.array([1.0, 2.0, 4.0])
-    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", np.ones(3))}, coords={"wavenumber": q})
-    >>> cumulative_moment(psd, 1).values  # (q^2 - 1) / 2
-    array([0. , 1.5, 7.5])
-    """
-    q, spectrum = spectrum_arrays(psd)
-    power = f"{3 - order:g}"
-    return xr.DataArray(
-        cumulative(q, spectrum, order),
-        coords={"wavenumber": psd["wavenumber"]},
-        dims="wavenumber",
-        name="moment",
-        attrs={
-            "units": "1" if power == "0" else f"m{power}",
-            "long_name": f"cumulative moment of order {order:g} of the power spectrum",
-        },
-    )
-
-
 def rms_roughness(psd: xr.Dataset) -> float:
     """Return the rms roughness h_rms [m] of a spectrum: <h^2> = 2 pi int q C dq."""
     return float(np.sqrt(2 * np.pi * spectral_moment(psd, 1)))

@@ -4,18 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-import pandas as pd
-import xarray as xr
 
-from tribolab.contact.geometry import Contact
 from tribolab.core.errors import AnalysisError, shown
 from tribolab.core.untyped import Arguments
-from tribolab.core.wording import number
 from tribolab.fit import limits
-from tribolab.fit.joint.fit import fit_shear_stress_jointly
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit
 
@@ -72,97 +66,6 @@ class ModelComparison:
     reference: str
     models: tuple[ComparedModel, ...]
     fits: Mapping[str, JointFit]
-
-    def table(self) -> pd.DataFrame:
-        """Return a row for each model."""
-        return pd.DataFrame([vars(model) for model in self.models]).set_index("name")
-
-    def _repr_html_(self) -> str:
-        """Return odds and words of each model as a table; all numbers folded away."""
-        rows = "".join(
-            f"<tr><th>{model.name}</th><td>{_odds(model.evidence)}</td>"
-            f"<td>{_odds(model.prediction)}</td><td>{model.words}</td></tr>"
-            for model in self.models
-        )
-        table = self.table().to_html(float_format=lambda value: f"{value:.4g}")
-        return (
-            "<table><thead><tr><th></th><th>ln of odds</th><th>by predicted loads</th><th></th>"
-            f"</tr></thead><tbody>{rows}</tbody></table>"
-            f"<details><summary>all numbers in SI</summary>{table}</details>"
-        )
-
-
-def compare_shear_stress_models(
-    measured: xr.Dataset,
-    contact: Contact,
-    psd: xr.Dataset,
-    viscosity: str | float,
-    load: str | float | xr.DataArray,
-    variants: Mapping[str, Mapping[str, Any]] | None = None,
-    **given: Any,
-) -> ModelComparison:
-    """Fit the curves of all loads under several models, and compare the models.
-
-    Parameters
-    ----------
-    measured, contact, psd, viscosity, load
-        As for `fit_shear_stress_jointly`.
-    variants
-        Arguments of `fit_shear_stress_jointly` that each model changes, by name, such as
-        ``{"adhesive area": {"area_enhancement": enhancement}}``; the first is the reference. By
-        default a shear stress that is a power law of speed and load, a constant one, and no
-        friction factors.
-    **given
-        Further arguments, the same for all models.
-
-    Returns
-    -------
-    ModelComparison
-
-    Raises
-    ------
-    AnalysisError
-        If a model cannot be fitted, with its name.
-
-    Notes
-    -----
-    The more conservative of two criteria is used: the evidence, which penalises the flexibility of
-    a model and depends on the priors; and leave-one-out cross-validation over the loads,
-    ``sum_l ln p(y_l | other loads)``, which measures prediction and hardly depends on them. Odds
-    below e (2.7) are no preference, above e^3 (20) strong [1]_. If the two differ in sign the data
-    do not decide. A preferred model with fewer free parameters is called sufficient.
-
-    References
-    ----------
-    .. [1] R. E. Kass, A. E. Raftery, J. Am. Stat. Assoc. 90, 773 (1995).
-       doi:10.1080/01621459.1995.10476572
-
-    Examples
-    --------
-    >>> import numpy as np, xarray as xr
-    >>> from tribolab.lubrication.stribeck import stribeck_curve
-    >>> q, c = np.array([423.0, 9e4, 3e9]), np.array([1.63e-22, 1.63e-22, 4e-42])
-    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, {"wavenumber": q})
-    >>> from tribolab.contact.geometry import LineContact
-    >>> contact, speed = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5), np.geomspace(1e-7, 1e-1, 19)
-    >>> curves = stribeck_curve(contact, psd, 1.4, [310.0, 910.0], 1e6, speed, cells=60)
-    >>> measured = curves[["friction_coefficient"]].sel(sliding_speed=slice(9e-7, 1.1e-2))
-    >>> measured["friction_coefficient_sem"] = 0.01 * measured.friction_coefficient
-    >>> compared = compare_shear_stress_models(
-    ...     measured, contact, psd, 1.4, measured["load"], curves=curves
-    ... )
-    >>> compared.table().words.iloc[1]
-    'constant shear stress is enough'
-    """
-    priors = given.pop("priors", None) or JointPriors()
-    fits: dict[str, JointFit] = {}
-    for name, changed in (variants or usual_variants(priors)).items():
-        mine: Arguments = {"priors": priors, **given, **changed}
-        try:
-            fits[name] = fit_shear_stress_jointly(measured, contact, psd, viscosity, load, **mine)
-        except AnalysisError as error:
-            raise AnalysisError(error, where=shown(name)) from error
-    return compared(fits)
 
 
 def usual_variants(priors: JointPriors) -> dict[str, Arguments]:
@@ -245,7 +148,3 @@ def _conclude(
     if strength < limits.STRONG_LN_ODDS.value:
         return f"the data lean to {wanted[0]}"
     return f"the data need {model[0]}" if wanted == model else f"the data contradict {model[0]}"
-
-
-def _odds(value: float) -> str:
-    return "–" if np.isnan(value) else number(value, 2)

@@ -43,17 +43,6 @@ _SIMULATED_CYCLES = 200  # simulated cycles that determine the bias due to noise
 _SIMULATION_ROUNDS = 2
 
 
-class EventLimits(NamedTuple):
-    """Limits for events and records; see `stick_slip`."""
-
-    hysteresis: float = 0.5
-    noise_levels: float = 4.0
-    fewest_samples: int = 16
-
-
-_DEFAULT = EventLimits()
-
-
 class Examined(NamedTuple):
     """Results for a record; numbers have the signal's unit."""
 
@@ -81,23 +70,19 @@ class View(NamedTuple):
     regularity: Regularity
 
 
-def examine_record(
-    time: np.ndarray, values: np.ndarray, thresholds: EventLimits = _DEFAULT, *, force: bool = False
-) -> Examined | str:
+def examine_record(time: np.ndarray, values: np.ndarray, *, force: bool = False) -> Examined | str:
     """Analyse one record, or return the reason why it cannot be.
 
     Parameters
     ----------
     time, values
         [s], and friction, positive as resistance (time).
-    thresholds
-        Limits for events and records.
     force
         Whether the values are a force [N]; stored in the result.
     """
     record = make_record(time, values)
     n = record.values.size
-    if n < max(thresholds.fewest_samples, 4):
+    if n < limits.MIN_SAMPLES_OF_RECORD.value:
         return f"{n} samples are too few"
     least = 1e-12 * abs(record.values[0])
     if np.ptp(record.values[:4096]) <= least and np.ptp(record.values) <= least:
@@ -109,9 +94,9 @@ def examine_record(
     surveyed = survey(record)
     if surveyed is None:
         return "too short for a spectrum"
-    view, slow = _best_view(record, surveyed, noise, thresholds), slow_wave(record)
+    view, slow = _best_view(record, surveyed, noise), slow_wave(record)
     if slow is None and not view.oscillation.false_alarm < limits.BAND_BY_CHANCE.value:
-        record, surveyed, view = _without_slow_wave(record, surveyed, view, noise, thresholds)
+        record, surveyed, view = _without_slow_wave(record, surveyed, view, noise)
     oscillation, part, events = view.oscillation, view.record, view.events
     lag = max(1, int(round(1 / (oscillation.frequency * 16 * part.spacing))))
     form = describe_waveform(part.values, lag, events, view.regularity.periods)
@@ -132,17 +117,17 @@ def examine_record(
     )  # fmt: skip
 
 
-def _best_view(record: EvenRecord, surveyed: Survey, noise: float, thresholds: EventLimits) -> View:
+def _best_view(record: EvenRecord, surveyed: Survey, noise: float) -> View:
     """Return the view at the period of the strongest line, or at another one that is more regular.
 
     In a record of few sawtooth periods the second harmonic may be the strongest significant line:
     then the drops repeat at another period, and the spectrum is examined there. Slow drift or noise
     may hide or split drops: then they are searched for in means, and without the drift.
     """
-    view = _view(record, oscillation(surveyed), noise, thresholds)
+    view = _view(record, oscillation(surveyed), noise)
     if at_odds(view.oscillation, view.regularity):
         own = 1 / float(view.regularity.periods.mean())
-        again = _view(record, oscillation(surveyed, near=own), noise, thresholds)
+        again = _view(record, oscillation(surveyed, near=own), noise)
         if not at_odds(again.oscillation, again.regularity):
             view = again
     # slow drift minus its running mean also oscillates, with a period near the averaging time
@@ -151,7 +136,7 @@ def _best_view(record: EvenRecord, surveyed: Survey, noise: float, thresholds: E
         for part in (record, _without_wander(record, view.oscillation)):
             if part is None:
                 continue
-            again = _view(part, view.oscillation, noise, thresholds, _COARSE_SAMPLES_PER_PERIOD)
+            again = _view(part, view.oscillation, noise, _COARSE_SAMPLES_PER_PERIOD)
             less = scatter(
                 again.regularity.periods
             ) < limits.MAX_SCATTER_WITHOUT_WANDER.value * scatter(view.regularity.periods)
@@ -161,14 +146,14 @@ def _best_view(record: EvenRecord, surveyed: Survey, noise: float, thresholds: E
 
 
 def _without_slow_wave(
-    record: EvenRecord, surveyed: Survey, view: View, noise: float, thresholds: EventLimits
+    record: EvenRecord, surveyed: Survey, view: View, noise: float
 ) -> tuple[EvenRecord, Survey, View]:
     """Remove a slow wave if a larger regular oscillation remains."""
     rest = without_slow_wave(record)
     found = survey(rest[0]) if rest else None
     if rest is None or found is None:
         return record, surveyed, view
-    again = _best_view(rest[0], found, noise, thresholds)
+    again = _best_view(rest[0], found, noise)
     sure = (
         again.oscillation.false_alarm < limits.BAND_BY_CHANCE.value
         and again.oscillation.swing > rest[1]
@@ -220,7 +205,6 @@ def _view(
     record: EvenRecord,
     oscillation: Oscillation,
     noise: float,
-    thresholds: EventLimits,
     fewest: int = _SAMPLES_PER_PERIOD,
 ) -> View:
     """Find the cycles of an oscillation at the scale of its period."""
@@ -233,13 +217,13 @@ def _view(
     part = _without_drift(part, oscillation.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
-        thresholds.hysteresis * oscillation.swing,
-        thresholds.noise_levels * noise / np.sqrt(size),
+        limits.MIN_EVENT_OVER_SWING.value * oscillation.swing,
+        limits.MIN_EVENT_OVER_NOISE.value * noise / np.sqrt(size),
         limits.MIN_DROP_IN_STEPS.value * step,
     )
     events = find_events(part.time, part.values, hysteresis)
     if events.drop.size:  # irregular cycles have a weak line: use the drops as the scale
-        typical = thresholds.hysteresis * float(np.mean(events.drop))
+        typical = limits.MIN_EVENT_OVER_SWING.value * float(np.mean(events.drop))
         if typical > hysteresis:
             hysteresis = typical
             events = find_events(part.time, part.values, hysteresis)

@@ -4,6 +4,11 @@ from tribolab.core.limit import Count, Limit
 
 _TABLE = "tests/detection/stick_slip_table.py, seeds below 10 000; reported on seeds from 20 000"
 
+MIN_EVENT_OVER_SWING = Limit(
+    0.5, "1", "swing of an event over that of the segment's oscillation", _TABLE
+)
+MIN_EVENT_OVER_NOISE = Limit(4.0, "1", "swing of an event over the noise of a sample", _TABLE)
+MIN_SAMPLES_OF_RECORD = Count(16, "1", "samples of a segment that is evaluated for stick-slip")
 MAX_LINES = Count(6, "1", "spectral lines that are listed for a segment, the strongest first")
 MIN_VARIANCE_OF_LINE = Limit(
     0.03, "1", "variance of a listed line over that of the strongest one", _TABLE

@@ -16,7 +16,7 @@ from tribolab.friction.coefficient.coefficient import belong, friction_signal, t
 from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.critical_stiffness import STIFFNESS, critical_stiffness
-from tribolab.friction.oscillation.examine import EventLimits, Examined, examine_record
+from tribolab.friction.oscillation.examine import Examined, examine_record
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.rig_waves import RigMotion, RigWave, motion_of, rig_wave
 from tribolab.friction.oscillation.slip_table import (
@@ -80,14 +80,7 @@ class SegmentSignal(NamedTuple):
 
 
 @of_runs
-def stick_slip(
-    run: xr.Dataset,
-    segments: xr.Dataset,
-    *,
-    hysteresis: float = 0.5,
-    noise_levels: float = 4.0,
-    fewest_samples: int = 16,
-) -> xr.Dataset:
+def stick_slip(run: xr.Dataset, segments: xr.Dataset) -> xr.Dataset:
     """Return stick-slip of each segment: spectra, events, and class of waveform.
 
     Parameters
@@ -97,12 +90,6 @@ def stick_slip(
         ``friction_force`` alone.
     segments
         From `find_segments` on the same run; the trimmed part of each is analysed.
-    hysteresis
-        Smallest swing of an event, relative to the swing of the segment's oscillation.
-    noise_levels
-        Smallest swing of an event in standard deviations of the noise.
-    fewest_samples
-        Segments with fewer samples are not evaluated.
 
     Returns
     -------
@@ -172,14 +159,13 @@ def stick_slip(
     ('sawtooth stick-slip', 10.0)
     """
     belong(run, segments)
-    thresholds = EventLimits(hysteresis, noise_levels, fewest_samples)
     speed = segments["sliding_speed"].values.astype(float)
     force = friction_signal(run) == "friction_force" and "normal_force" not in run
     motion = motion_of(run)
     examined, loads, remarks, waves = [], [], [], []
     for signal, v in zip(_signals(run, segments), speed, strict=True):
         values, wave = _without_rig_wave(signal, motion)
-        seen = examine_record(signal.time, values, thresholds, force=force)
+        seen = examine_record(signal.time, values, force=force)
         examined.append(seen)
         loads.append(signal.load)
         waves.append(wave)

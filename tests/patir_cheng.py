@@ -14,18 +14,6 @@ _CONTACT = 1 / 300  # gap in h_rms below which no fluid is sheared
 def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary") -> FlowFactors:
     """Return flow and friction factors of Patir and Cheng for isotropic Gaussian roughness.
 
-    Parameters
-    ----------
-    rms_roughness
-        h_rms [m].
-    rough_body
-        ``"stationary"`` or ``"moving"``, as for `flow_factors`.
-
-    Returns
-    -------
-    FlowFactors
-        For `stribeck_curve` as ``factors``.
-
     Notes
     -----
     With H the distance of the undeformed mean planes over h_rms, the reference film is nominal, h =
@@ -46,12 +34,6 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
     .. [1] N. Patir, H. S. Cheng, J. Lubr. Technol. 100, 12 (1978). doi:10.1115/1.3453103
     .. [2] N. Patir, H. S. Cheng, "Application of Average Flow Model to Lubrication Between Rough
        Sliding Surfaces", J. Lubr. Technol. 101, 220 (1979).
-
-    Examples
-    --------
-    >>> factors = patir_cheng("1 um").at(3e-6)
-    >>> f"{float(factors.phi_p):.3f} {float(factors.phi_s):.3f}"
-    '0.832 -0.553'
     """
     check_rough_body(rough_body)
     height = positive(rms_roughness, "m", "rms_roughness")
