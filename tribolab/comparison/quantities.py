@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from tribolab.comparison.run_values import MatchedRuns, condition_text
+from tribolab.core.coverage import NORMAL
 from tribolab.metrology.differences import differences_of_groups, interval
 
-_TWO_SIDED = 1.959963984540054  # standard deviations in half a 95 % interval
 _ROUGHNESS = {"rms_roughness": "_m", "rms_slope": ""}
 
 
@@ -131,8 +131,7 @@ def _roughness(first: pd.DataFrame, second: pd.DataFrame, by: str) -> list[list[
         text = str(former["surface"]) if keys else f"{former['surface']} and {latter['surface']}"
         for name, unit in _ROUGHNESS.items():
             spread = [
-                (float(row[f"{name}_high{unit}"]) - float(row[f"{name}_low{unit}"]))
-                / (2 * _TWO_SIDED)
+                (float(row[f"{name}_high{unit}"]) - float(row[f"{name}_low{unit}"])) / (2 * NORMAL)
                 for row in (former, latter)
             ]
             values = float(former[f"{name}{unit}"]), float(latter[f"{name}{unit}"])

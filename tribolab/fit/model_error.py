@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from tribolab.arrays.threads import one_thread
 from tribolab.contact.geometry import Contact
 from tribolab.contact.persson import rough_band
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError
 from tribolab.core.validity import reasons_of, together
 from tribolab.fit import limits
@@ -19,7 +20,6 @@ from tribolab.fit.left_out import describe_effects, effects_not_modelled
 from tribolab.fit.unknowns import Range, Unknowns, merge_old_options
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import fixed_parameters, variations
-from tribolab.friction.statistics import NORMAL
 from tribolab.lubrication.parameters import (
     Interface,
     Liquid,

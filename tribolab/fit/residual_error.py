@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from tribolab.core.coverage import NORMAL
 from tribolab.fit import limits
-from tribolab.friction.statistics import NORMAL
 
 _CORRELATION_GRID = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
 _GROWTH_GRID = 1.35 ** np.arange(18)

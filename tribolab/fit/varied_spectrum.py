@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError
 from tribolab.fit import limits
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
-from tribolab.friction.statistics import NORMAL
 from tribolab.surface.extrapolation import AS_MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from tribolab.core.public_names import loaded_on_use
 
 if TYPE_CHECKING:
-    from tribolab.friction.blocks import error_from_blocks as error_from_blocks
+    from tribolab.friction.mean_error.block_means import error_from_blocks as error_from_blocks
     from tribolab.friction.coefficient.cycles import friction_per_cycle as friction_per_cycle
     from tribolab.friction.decisions.decision import Decision as Decision
     from tribolab.friction.inertia import (

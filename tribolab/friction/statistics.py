@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from tribolab.core.coverage import NORMAL
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 from tribolab.friction.mean_error.course import line_through
@@ -39,7 +40,6 @@ from tribolab.friction.run_out import (
 from tribolab.friction.time_weights import on_grid, sample_weights
 
 MOST_STRETCHES = int(limits.BLOCKS.value)
-NORMAL = float(special.ndtri(0.975))  # U95 over the standard error for many degrees
 _MIN_STRETCHES_OF_TURN = 40  # fewest intervals for which waves of a turning rig are fitted
 # number of frequencies of the spectrum with which a wave of a turning rig is compared
 _SPECTRUM_FREQUENCIES = 1024
@@ -258,7 +258,7 @@ def _estimate_errors(records: list[_Record]) -> list[Estimate]:
     )
     out = []
     for k, record in enumerate(records):
-        sem, u95 = float(path.sem[k]), float(path.sem[k] * _width(path.dof[k]))
+        sem, u95 = float(path.sem[k]), float(path.sem[k] * coverage_of(path.dof[k]))
         past = float(beyond.sem[k])
         effective = float(np.clip((record.std / past) ** 2, 1.0, record.samples)) if past else 1.0
         change = float(line.change[k])
@@ -278,7 +278,7 @@ def _estimate_errors(records: list[_Record]) -> list[Estimate]:
                 u95,
                 past,
                 float(beyond.dof[k]),
-                float(past * _width(beyond.dof[k])),
+                float(past * coverage_of(beyond.dof[k])),
                 record.mean + float(levels.level[k] - blocks[k].mean()),
                 u95 <= record.reach / 2,
             )
@@ -286,7 +286,8 @@ def _estimate_errors(records: list[_Record]) -> list[Estimate]:
     return out
 
 
-def _width(dof: float) -> float:
+def coverage_of(dof: float) -> float:
+    """Return U95 over the standard error, of a mean with some degrees of freedom."""
     return NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975))
 
 

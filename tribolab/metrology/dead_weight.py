@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError
-from tribolab.friction.statistics import NORMAL, estimate_of
+from tribolab.friction.statistics import estimate_of
 from tribolab.units.conversion import positive
 
 _TRIM = 0.1  # share of each interval with and without the weight that is cut at both ends

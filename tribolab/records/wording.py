@@ -12,7 +12,6 @@ from tribolab.core.wording import MINUS, number
 UNITS = {"friction_coefficient": "", "half_loop": " N", "friction_force": " N"}
 # quantities whose standard deviation and error have their unit
 SPREAD_OF = {"half_loop": "friction_force"}
-NORMAL = 1.959963984540054  # standard errors in U95 of a normal distribution
 SYMBOLS = {"friction_coefficient": "µ", "half_loop": "half loop", "friction_force": "F"}
 
 

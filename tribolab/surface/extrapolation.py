@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.core.provenance import history_line
 from tribolab.surface.limits import MAX_FITTED_HURST, MAX_SURE_HURST, MIN_HURST
@@ -17,7 +18,6 @@ from tribolab.units.stamping import stamp
 AS_MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
 _PER_DECADE = 20
 _ABOVE_ROLLOFF = 1.5  # start of the fitted range, relative to the roll-off
-_NORMAL = 1.959963984540054  # 97.5 % quantile of the normal distribution
 
 
 class PowerLaw(NamedTuple):
@@ -146,7 +146,7 @@ def extrapolate(
         grid = _grid(max(low, float(q[-1])), high)
         grid = grid[1:] if low <= q[-1] else grid
         log_c, log_error = law.log_value(grid)
-        spread = np.exp(_NORMAL * np.stack([-log_error, log_error]))
+        spread = np.exp(NORMAL * np.stack([-log_error, log_error]))
         parts.append(_Part(grid, np.exp(log_c), spread, TO_LARGE))
     value = np.concatenate([part.value for part in parts])
     below, above = np.concatenate([part.spread for part in parts], axis=1) * value
@@ -185,7 +185,7 @@ def extrapolate(
 def _is_surface_law(law: PowerLaw) -> bool:
     """Return whether the Hurst exponent is possible for a rough surface, within its error."""
     hurst, error = law.hurst, law.hurst_error
-    sure = hurst - _NORMAL * error
+    sure = hurst - NORMAL * error
     return bool(MIN_HURST.value <= hurst <= MAX_FITTED_HURST.value and sure <= MAX_SURE_HURST.value)
 
 
@@ -198,7 +198,7 @@ def _refuse_law(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
     why = why or "a gauge, a groove, or what a filter or the window left of a single wave"
     raise AnalysisError(
         f"C(q) falls between {decade[0]:.4g} and {decade[1]:.4g} 1/m as on a surface with a Hurst "
-        f"exponent of {law.hurst:.2g} ± {_NORMAL * law.hurst_error:.2g} (U95); "
+        f"exponent of {law.hurst:.2g} ± {NORMAL * law.hurst_error:.2g} (U95); "
         "self-affine surfaces have "
         f"{MIN_HURST.value:g} to 1 and smooth ones up to {MAX_SURE_HURST.value:g}, so no power "
         f"law leads on from there ({why})",
@@ -240,7 +240,7 @@ def _log_error(psd: xr.Dataset) -> np.ndarray | None:
         return None
     with np.errstate(divide="ignore", invalid="ignore"):
         width = np.log(psd.psd_2d_high.values / psd.psd_2d_low.values)
-    error = width / (2 * _NORMAL)
+    error = width / (2 * NORMAL)
     return error if np.isfinite(error).all() and (error > 0).all() else None
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.store.data_files import read_data, write_data
+from tribolab.core.coverage import NORMAL
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import force_text
 from tribolab.records.models.joint_record import (
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from tribolab.fit.joint.priors import JointPriors
     from tribolab.records.parts import ModelOutcome
 
-_NORMAL = 1.959963984540054
 _SAME_LOAD = 0.02  # largest relative difference of forces that count as one load
 _ADHESIVE = "adhesive area"
 _OTHER_AREA = {"persson": "corrected area"}  # by the theory of the fit; default: Persson's
@@ -171,7 +171,7 @@ def _growth(
     works = [max(w, 0.0) for w in (work.value, work.low, work.high)]
     solved = adhesion_by_works(pressure, psd, contact.effective_modulus, works, area)
     value, low, high = (part["area_enhancement"].values for part in solved)
-    return _Growth(value, np.log(high / low) / (2 * _NORMAL))
+    return _Growth(value, np.log(high / low) / (2 * NORMAL))
 
 
 def _curve_name(task: JointTask, surface: str, force: float) -> str:
@@ -188,7 +188,7 @@ def _priors(task: JointTask) -> JointPriors:
     if task.viscosity_range is None:
         return JointPriors()
     low, high = task.viscosity_range
-    spread = max(np.log(task.viscosity / low), np.log(high / task.viscosity)) / _NORMAL
+    spread = max(np.log(task.viscosity / low), np.log(high / task.viscosity)) / NORMAL
     return JointPriors(viscosity_spread=float(spread))
 
 

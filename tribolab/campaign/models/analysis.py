@@ -13,6 +13,7 @@ from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.contact.area import alternative_area_theory
 from tribolab.contact.geometry import Contact, make_contact
 from tribolab.contact.hertz import hertz_half_width
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import explain, speed_text
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
 _PROFILES = 5
 _A_DECADE = 2  # speeds per decade at which sensitivities are computed
 _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # separation / h_rms at which the factors are shown
-_95 = 1.959963984540054
 
 
 def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], list[Finding]]:
@@ -202,7 +202,7 @@ def _fit(
         speed_range=model.settings["fit_speeds"],
         area_enhancement=best,
         # the bounds may be asymmetric: the larger distance counts as the 95 % error
-        area_enhancement_error=max(best - low, high - best) / _95,
+        area_enhancement_error=max(best - low, high - best) / NORMAL,
         common_error=model.repeatability / np.sqrt(runs),
         common_freedom=model.freedom,
         curve=computed,
@@ -230,7 +230,7 @@ def _input_sensitivities(
 
 def _range_of(value: float, error: float) -> tuple[float, float] | None:
     """Return the 95 % range of a value with a relative standard uncertainty; None if that is 0."""
-    factor = float(np.exp(_95 * error))
+    factor = float(np.exp(NORMAL * error))
     return (value / factor, value * factor) if error > 0 else None
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from tribolab.campaign.settings.contact_pairs import contact_of_label, contact_table
 from tribolab.campaign.settings.media import Recorded
+from tribolab.core.coverage import NORMAL
 from tribolab.core.provenance import join_sources, sha256_of, source_attributes
 from tribolab.core.untyped import Arguments
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from tribolab.records.part_records import CurveRecord, SurfaceRecord
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 
-_95 = 1.959963984540054
 _ELSEWHERE = {  # keys of [model] that are no settings of one model's curve
     "compute",
     "uncertainty",
@@ -213,7 +213,7 @@ def _modulus_range(contact: Contact, error: float | None) -> tuple[float, float]
     modulus, stated = contact.youngs_modulus, contact.youngs_modulus_range
     if stated is not None or modulus is None or error is None:
         return stated
-    factor = float(np.exp(_95 * error))
+    factor = float(np.exp(NORMAL * error))
     return modulus / factor, modulus * factor
 
 
@@ -224,7 +224,7 @@ def _input_errors(
     names = ("load", "radius", "youngs_modulus")
     errors = {name: stated[name] for name in names if stated.get(name, 0.0) > 0}
     if modulus_range is not None and "youngs_modulus" not in errors:
-        errors["youngs_modulus"] = float(np.log(modulus_range[1] / modulus_range[0]) / (2 * _95))
+        errors["youngs_modulus"] = float(np.log(modulus_range[1] / modulus_range[0]) / (2 * NORMAL))
     return errors
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.core.coverage import NORMAL
 from tribolab.friction.running_in.history import History, histories_of
 from tribolab.friction.running_in.settling import blocks_of
 from tribolab.records.parts import Row
 from tribolab.records.runs.running_in_record import RunningIn
-from tribolab.records.wording import NORMAL, plain_value
+from tribolab.records.wording import plain_value
 
 _MAX_POINTS = 384  # columns of friction along a run for figures
 

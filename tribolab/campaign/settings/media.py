@@ -6,9 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.limit import Limit
-
-_95 = 1.959963984540054
 
 
 class MediumViscosity(NamedTuple):
@@ -138,7 +137,7 @@ def medium_viscosity(
     kelvin = math.hypot(kelvin, recorded.spread if recorded else 0.0)
     error = (liquid.per_kelvin or 0.0) * kelvin
     if bounds is not None:
-        error = math.log(bounds[1] / bounds[0]) / (2 * _95)
+        error = math.log(bounds[1] / bounds[0]) / (2 * NORMAL)
     elif computed is not None:
         if value is not None:  # measured, not by the formula
             computed = computed._replace(formula=0.0)
@@ -147,5 +146,5 @@ def medium_viscosity(
     if bounds is not None:
         bounds = factor * bounds[0], factor * bounds[1]
     elif error > 0:
-        bounds = value * math.exp(-_95 * error), value * math.exp(_95 * error)
+        bounds = value * math.exp(-NORMAL * error), value * math.exp(NORMAL * error)
     return MediumViscosity(value, error, bounds)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError
 from tribolab.fit import limits
 from tribolab.fit.joint.load_curve import LoadCurve
@@ -14,7 +15,6 @@ from tribolab.fit.joint.model import JointModel, Points, shared_by_points
 from tribolab.fit.joint.posterior import Posterior
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.spectrum_error import SPECTRUM
-from tribolab.friction.statistics import NORMAL
 from tribolab.metrology.budget_curve import shared_parts
 
 _INPUTS = ("load", "radius", "Young's modulus")  # variations common to all surfaces

@@ -9,13 +9,13 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import Contact
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError, Cure, shown
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import number
 from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, constant_response, response_of
-from tribolab.friction.statistics import NORMAL
 from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.units.stamping import labelled

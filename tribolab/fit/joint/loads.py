@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.common_errors import calibration_covariance, model_covariance
 from tribolab.fit.joint.load_curve import LoadCurve, MeasuredPoints, points_of
@@ -22,7 +23,6 @@ from tribolab.fit.joint.model import (
 from tribolab.fit.joint.posterior import Posterior, mixture_quantile, posterior_of
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit, Marginal
-from tribolab.friction.statistics import NORMAL
 from tribolab.units.stamping import stamp
 
 _INTERVAL_ENDS = 0.025, 0.975

@@ -13,6 +13,7 @@ from tribolab.arrays.broadcasting import of_runs, over_dims
 from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
 from tribolab.core.attributes import RunAttributes
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.core.untyped import Json
 from tribolab.friction.coefficient.reversal import reversal_of
@@ -22,7 +23,6 @@ from tribolab.friction.run_out import turn_remark, turned
 from tribolab.friction.segments.limits import MAX_LOST_CONTACT
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.statistics import (
-    NORMAL,
     Estimate,
     estimates_of,
     undetermined_remark,

@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from tribolab.core.coverage import NORMAL
 from tribolab.friction.points import limits
-from tribolab.friction.statistics import NORMAL
 
 _SCATTER_GRID = np.concatenate([[0.0], np.geomspace(0.01, 1000.0, 110)])
 _BISECTIONS = 60

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy import special
 
 from tribolab.core.attributes import SegmentAttributes
+from tribolab.core.coverage import NORMAL
 from tribolab.friction.points import limits
 from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_scatter
 from tribolab.friction.points.speed_groups import speed_groups, sweeps_of
-from tribolab.friction.statistics import NORMAL, error_of_series
+from tribolab.friction.statistics import coverage_of, error_of_series
 from tribolab.friction.zero.of_run import PAIRED
 
 
@@ -67,16 +67,33 @@ def _observe_run(friction: xr.Dataset, run: int) -> Observations:
     name = "friction_coefficient"
     sem = column(f"{name}_beyond_sem", f"{name}_sem")
     wide = column(f"{name}_beyond_U95", f"{name}_U95")
-    wide = np.where(np.isfinite(wide), wide, NORMAL * sem)
     wanted = np.abs(column("set_speed"))
-    pairs = np.full(value.size, -1.0)
-    if "pair" in friction and SegmentAttributes.from_attrs(friction.attrs).offset in PAIRED:
-        pairs = friction["pair"].values.astype(float)
     known = np.isfinite(value) & (speed > 0)
     shared = column(f"{name}_shared_sem")
     return grouped_strokes(
-        run, speed, wanted, value, sem, wide, shared, column(f"{name}_std") ** 2, pairs, known
-    )
+        run, speed, wanted, value, sem, wide, shared, column(f"{name}_std") ** 2,
+        pairs_of(friction), known,
+    )  # fmt: skip
+
+
+def pairs_of(friction: xr.Dataset) -> np.ndarray:
+    """Return the number of the pair of each segment; -1 for none (segment)."""
+    if "pair" not in friction or SegmentAttributes.from_attrs(friction.attrs).offset not in PAIRED:
+        return np.full(friction.sizes["segment"], -1.0)
+    return friction["pair"].values.astype(float)
+
+
+def wider_error(column: Callable[[str], np.ndarray], name: str, ending: str) -> np.ndarray:
+    """Return the larger error of each segment: over its path, or beyond it, as a trend may go on.
+
+    Parameters
+    ----------
+    column
+        Function that returns a column of the friction result by name, NaN if it is missing.
+    name, ending
+        The quantity; "sem" or "U95".
+    """
+    return np.fmax(column(f"{name}_{ending}"), column(f"{name}_beyond_{ending}"))
 
 
 def grouped_strokes(
@@ -98,12 +115,14 @@ def grouped_strokes(
     run
         Number of the run.
     speed, set_speed, value, sem, u95, shared, variance
-        Columns of the strokes; in the unit of the value, speeds in m/s.
+        Columns of the strokes; in the unit of the value, speeds in m/s. An unknown `u95` is that
+        of a normal distribution.
     pairs
         The same number for the strokes of a pair, below 0 for a stroke without a partner.
     known
         Mask of the strokes used.
     """
+    u95 = np.where(np.isfinite(u95), u95, NORMAL * sem)
     alone = -1.0 - np.arange(value.size)
     place = np.flatnonzero(known)
     key = np.where(pairs >= 0, pairs, alone)[place]
@@ -198,7 +217,7 @@ def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean
 def _series_mean(values: np.ndarray, errors: np.ndarray) -> Mean:
     series = error_of_series(values[None])
     sem, dof = float(series.sem[0]), float(series.dof[0])
-    wide = sem * (NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975)))
+    wide = sem * coverage_of(dof)
     known = errors[np.isfinite(errors)]
     own = float(np.sqrt((known**2).sum()) / max(known.size, 1))
     if NORMAL * own > wide:  # strokes that agree better than their own errors

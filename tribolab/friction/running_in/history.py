@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.arrays.broadcasting import of_runs
+from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.coefficient.coefficient import belong, friction_coefficient, friction_signal
 from tribolab.friction.coefficient.cycles import friction_per_cycle
@@ -21,7 +22,6 @@ from tribolab.friction.running_in.kinds import CYCLES, STRETCHES, STROKES
 from tribolab.friction.running_in.settling import Settling, blocks_of, settling_of
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.segments.stretches import name_of
-from tribolab.friction.statistics import NORMAL
 from tribolab.friction.time_weights import on_grid
 from tribolab.units.stamping import stamp
 

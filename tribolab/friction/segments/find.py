@@ -10,9 +10,9 @@ from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import AnalysisError, UnitError, shown
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.loaded import loaded
-from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.measured import measured
 from tribolab.friction.segments.no_segment import add_needed_rate
+from tribolab.friction.segments.pieces import ConstancyLimits
 from tribolab.friction.segments.specimens import apart
 from tribolab.friction.segments.standstill import without_standstills
 from tribolab.friction.segments.stretches import (

@@ -64,6 +64,66 @@ MIDDLE_OF_CRANK_STROKE = Limit(
 MAX_TIME_OF_CHANCE_PLATEAUS = Limit(
     0.05, "1", "share of the time of strokes that plateaus cover by chance"
 )
+MIN_REST_SPEED_OVER_NOISE = Limit(
+    0.05, "1", "noise levels of a sample below which a mean speed is rest: the mean over a piece "
+    "scatters less than a sample", _TRICKY,
+)  # fmt: skip
+MIN_ERRORS_OF_RAMP = Limit(
+    3.0, "1", "standard errors of the change of speed that makes a piece a ramp", _TRICKY
+)
+MIN_CHANGE_AT_REST = Limit(
+    2.0, "1", "rest speeds by which the speed of a piece at rest surely changes: it is a ramp",
+    _TRICKY,
+)  # fmt: skip
+MAX_ERRORS_OF_EQUAL_SPEED = Limit(
+    3.0, "1", "standard errors between the speeds of two pieces that are joined", _TRICKY
+)
+MAX_DIFFERENCE_OF_EQUAL_SPEED = Limit(
+    0.5, "1", "resolutions between the speeds of two pieces that are joined: those that breaks "
+    "separate differ by one", _TRICKY,
+)  # fmt: skip
+MIN_PLATEAUS_OVER_BUMP = Limit(
+    20.0, "1", "length of two plateaus over that of the disturbance between them that is bridged",
+    _TRICKY,
+)  # fmt: skip
+MAX_RESOLUTIONS_ACROSS_BUMP = Limit(
+    2.0, "1", "resolutions within which the speeds on both sides of such a disturbance are equal",
+    _TRICKY,
+)  # fmt: skip
+MIN_ERRORS_OF_UNPROVEN = Limit(
+    3.0, "1", "standard errors of a change of speed (sqrt(12) errors of the mean) that must lie "
+    "within the allowed drift, if a plateau is short", _TRICKY,
+)  # fmt: skip
+MIN_NEIGHBOUR_OVER_SHORT = Limit(
+    4.0, "1", "length of a neighbouring piece over that of one that is short next to it", _TRICKY
+)
+MIN_RAMP_OVER_SPECK = Limit(
+    10.0, "1", "length of a ramp over that of a plateau next to it that is part of it", _TRICKY
+)
+MAX_DRIFTS_OF_TRANSIENT = Limit(
+    2.0, "1", "allowed drifts between the speeds of a transient and of the plateau it leads to",
+    _TRICKY,
+)  # fmt: skip
+MIN_CHANGE_OF_TRANSIENT = Limit(
+    0.5, "1", "change along a transient over its difference from the plateau it leads to", _TRICKY
+)
+MIN_SPIKE_OVER_NOISE = Limit(
+    6.0, "1", "noise levels by which a single velocity deviates from its neighbours' median",
+    _TRICKY,
+)  # fmt: skip
+MIN_RELATIVE_SPIKE = Limit(1e-3, "1", "share of the speed below which a spike is ignored", _TRICKY)
+MIN_SCATTER_OF_UNSIGNED_NOISE = Limit(
+    0.6, "1", "scatter over the mean of a velocity that is noise without its sign",
+    "half-normal distribution: 0.76",
+)  # fmt: skip
+MAX_SMALL_OF_UNSIGNED_NOISE = Limit(
+    0.3, "1", "share of the mean below which a reading of such noise is small",
+    "half-normal distribution: 0.19 of the readings lie below",
+)  # fmt: skip
+MIN_SHARE_OF_SMALL = Limit(
+    0.1, "1", "share of small readings in noise without its sign",
+    "half-normal distribution: 0.19",
+)  # fmt: skip
 MIN_LOAD_STEP = Limit(
     0.15, "1", "step over the larger load; a smaller one is a slow change of the load", _TRICKY
 )

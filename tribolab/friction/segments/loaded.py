@@ -9,7 +9,7 @@ from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.load_steps import at_levels
-from tribolab.friction.segments.locate import ConstancyLimits
+from tribolab.friction.segments.pieces import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
 from tribolab.friction.zero.limits import (
     MAX_DRIFT_OF_LOAD_ZERO,

@@ -14,13 +14,8 @@ from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments import limits, slopes
 from tribolab.friction.segments.constancy import MeanVelocities
-from tribolab.friction.segments.locate import (
-    ConstancyLimits,
-    VelocityPiece,
-    locate,
-    moving,
-    trimmed,
-)
+from tribolab.friction.segments.locate import locate
+from tribolab.friction.segments.pieces import ConstancyLimits, VelocityPiece, moving, trimmed
 from tribolab.friction.segments.turns import strokes_within
 from tribolab.friction.time_weights import without_gaps
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.segments import limits, slopes
-from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece
+from tribolab.friction.segments.pieces import ConstancyLimits, VelocityPiece
 
 EQUAL = 1e-9  # of the range, or of the usual speed: smaller differences count as zero
 _INNER_PARTS = 4  # number of parts of the inner part whose speeds are compared

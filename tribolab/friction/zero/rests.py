@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.arrays.medians import median
-from tribolab.friction.statistics import NORMAL, estimates_of
+from tribolab.core.coverage import NORMAL
+from tribolab.friction.statistics import estimates_of
 from tribolab.friction.zero import limits
 
 _REST_BINS = 100  # in an interval that may be partly without load

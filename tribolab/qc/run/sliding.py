@@ -8,17 +8,15 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from tribolab.core.attributes import SegmentAttributes
+from tribolab.core.coverage import NORMAL
 from tribolab.core.limit import Limit
 from tribolab.core.wording import Count
 from tribolab.friction.coefficient import limits as of_trends
 from tribolab.friction.coefficient.steadiness import chance_limit, relative_change, undecided
 from tribolab.friction.oscillation.spectrum.lines import Line
-from tribolab.friction.points.strokes import run_means, shared_error
+from tribolab.friction.points.strokes import pairs_of, run_means, shared_error
 from tribolab.friction.segments.limits import DETECTION
-from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.limits import LOADS_DIFFER
-from tribolab.friction.zero.of_run import PAIRED
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.friction_sign import FRICTION_SIGN
 from tribolab.qc.run.per_segment import segment_results, status_of
@@ -121,9 +119,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
         return []
     speed, mu = friction["sliding_speed"].values, friction[name].values
     sem, wide = (friction[f"{name}_beyond_{end}"].values for end in ("sem", "U95"))
-    pairs = np.full(mu.size, -1.0)
-    if "pair" in friction and SegmentAttributes.from_attrs(friction.attrs).offset in PAIRED:
-        pairs = friction["pair"].values.astype(float)
+    pairs = pairs_of(friction)
     moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
     means = []
     for own in _load_groups(friction):  # differences between loads are not errors

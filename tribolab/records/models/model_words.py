@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import aligned, number, percent, speed_text
-from tribolab.records.wording import NORMAL
 
 if TYPE_CHECKING:
     import xarray as xr

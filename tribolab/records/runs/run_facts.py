@@ -14,9 +14,7 @@ from tribolab.core.wording import many, percent
 from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.waveform import NOT_CLEAR, NOT_LOOKED_AT, oscillating
-from tribolab.friction.points.strokes import run_means
-from tribolab.friction.statistics import NORMAL
-from tribolab.friction.zero.of_run import PAIRED
+from tribolab.friction.points.strokes import pairs_of, run_means, wider_error
 from tribolab.records.frames import friction_columns, plain_rows
 from tribolab.records.runs.decision_rows import decision_rows
 from tribolab.records.runs.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
@@ -136,13 +134,17 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     finite = np.isfinite(value)
     scatter = std[finite] / np.abs(value[finite])
     scatter = scatter[np.isfinite(scatter)]
+
+    def column(name: str) -> np.ndarray:
+        return values_of(friction, name, value.size)
+
     strokes = _Strokes(
         speed,
         value,
         std,
-        wider_error(friction, of, "sem"),
-        wider_error(friction, of, "U95"),
-        values_of(friction, f"{of}_shared_sem", value.size),
+        wider_error(column, of, "sem"),
+        wider_error(column, of, "U95"),
+        column(f"{of}_shared_sem"),
         pairs_of(friction),
     )
     about = SegmentAttributes.from_attrs(friction.attrs)
@@ -260,20 +262,6 @@ def values_of(data: xr.Dataset, name: str, size: int) -> np.ndarray:
     return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
 
 
-def wider_error(friction: xr.Dataset, name: str, ending: str) -> np.ndarray:
-    """Return the larger error of each segment: over the path, or beyond it (segment)."""
-    size = friction.sizes["segment"]
-    own, beyond = (values_of(friction, f"{name}{end}_{ending}", size) for end in ("", "_beyond"))
-    return np.fmax(own, beyond)
-
-
-def pairs_of(friction: xr.Dataset) -> np.ndarray:
-    """Return the number of the pair of each segment; -1 for none."""
-    if "pair" not in friction or SegmentAttributes.from_attrs(friction.attrs).offset not in PAIRED:
-        return np.full(friction.sizes["segment"], -1.0)
-    return np.asarray(friction["pair"], float)
-
-
 class _Strokes(NamedTuple):
     """Strokes of a run in temporal order; values in the unit of its quantity."""
 
@@ -288,11 +276,12 @@ class _Strokes(NamedTuple):
 
 def _highlights(strokes: _Strokes) -> list[Highlight]:
     """Return the mean over the strokes at the lowest, the middle and the highest speed."""
-    u95 = np.where(np.isfinite(strokes.u95), strokes.u95, NORMAL * strokes.sem)
     speed, known = strokes.speed, np.isfinite(strokes.value)
     if not (known & (speed > 0)).any():  # one group of all strokes
         speed = np.ones(speed.size)
-    means = run_means(speed, strokes.value, strokes.sem, u95, strokes.pairs, shared=strokes.shared)
+    means = run_means(
+        speed, strokes.value, strokes.sem, strokes.u95, strokes.pairs, shared=strokes.shared
+    )
     if not means:
         return []
     chosen = {0: "slowest", len(means) - 1: "fastest"}

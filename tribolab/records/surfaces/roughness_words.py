@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import Count, number
 from tribolab.records.parts import Row, number_of
-from tribolab.records.wording import NORMAL, error_text
+from tribolab.records.wording import error_text
 
 _BEND = 0.1  # share of Pq below which a circle is negligible
 _MAX_LISTED = 5  # surfaces that are listed

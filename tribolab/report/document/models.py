@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.untyped import Json
 from tribolab.records.models.model_rows import MODEL_LABELS
 from tribolab.records.part_records import ModelRows
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from tribolab.records.part_records import ModelRecord
     from tribolab.records.parts import ModelOutcome, Row
 
-_95 = 1.959963984540054
 _STATISTICAL = "statistical only: the spectrum's error is not in it"
 MODEL_COLUMNS = {  # columns that depend on several models or on the surface, and their meanings
     "area_dry_over_wet": "real contact area, dry divided by in the medium",
@@ -106,7 +106,7 @@ def complete(rows: Sequence[ModelRow]) -> None:
             source, (low, high) = (own or known)[0]
             fit |= {"spectrum_error_low": low, "spectrum_error_high": high}
             fit["spectrum_error_from"] = source.curve
-            _add_spectrum(fit, (high - low) / (2 * _95))
+            _add_spectrum(fit, (high - low) / (2 * NORMAL))
         else:
             low = high = 0.0
             fit |= dict.fromkeys(("spectrum_error_low", "spectrum_error_high"))

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribolab.core.wording import many, number
-from tribolab.friction.points.strokes import run_means
-from tribolab.friction.statistics import NORMAL
+from tribolab.friction.points.strokes import run_means, wider_error
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import error_text
@@ -85,12 +84,7 @@ def run_points(
         return np.array([number_of(row, key) for row in rows], float)
 
     name_of = "friction_coefficient"
-    # the larger of the errors within the path and beyond it, as a trend may continue
-    sem, wide = (
-        np.fmax(column(f"{name_of}_{end}"), column(f"{name_of}_beyond_{end}"))
-        for end in ("sem", "U95")
-    )
-    wide = np.where(np.isfinite(wide), wide, NORMAL * sem)
+    sem, wide = (wider_error(column, name_of, end) for end in ("sem", "U95"))
     pairs = column("pair") if offset in PAIRED else np.full(len(rows), -1.0)
     samples = np.nan_to_num(column("effective_samples"))
     means = run_means(

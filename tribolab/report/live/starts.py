@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import load_text, many, number
 from tribolab.figures.spec import Axis, FigureSpec, KeyRow, KeyTable, Panel, Series, places
 from tribolab.friction.points.mean_of_repeats import mean_of_repeats
 from tribolab.records.parts import Row, RunOutcome, number_of
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.starts import starts_of
-from tribolab.records.wording import NORMAL, error_text
+from tribolab.records.wording import error_text
 from tribolab.report.live.curves import system_name
 
 _HEADS = "Condition", "Load", "Hold time (s)", "Static µ", "Kinetic µ", "Starts"

@@ -7,8 +7,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import force_text, many
-from tribolab.records.wording import NORMAL, error_text
+from tribolab.records.wording import error_text
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import load_text
 from tribolab.figures.spec import KeyRow, KeyTable
 from tribolab.friction.points.mean_of_repeats import mean_of_repeats
@@ -16,7 +17,7 @@ from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
 from tribolab.records.runs.running_in_record import RunningIn, length_text
 from tribolab.records.surfaces.roughness_words import roughness_u95
-from tribolab.records.wording import NORMAL, error_text
+from tribolab.records.wording import error_text
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.points import point_error
 from tribolab.report.page.in_words import by_speed, half_speed

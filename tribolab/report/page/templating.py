@@ -14,15 +14,19 @@ from urllib.parse import quote
 
 import jinja2
 import jinja2.bccache
+import numpy as np
 from markupsafe import Markup
 
 from tribolab.core import wording as words
+from tribolab.core.coverage import NORMAL
 from tribolab.core.provenance import escape_controls
 from tribolab.core.untyped import Json
 from tribolab.core.wording import aligned, force_text, number
+from tribolab.friction.points.strokes import wider_error
 from tribolab.records import judgement, wording
 from tribolab.records.models.model_words import is_described, shear_stress_u95, stress_interval
 from tribolab.records.packed import deflated
+from tribolab.records.parts import Row, number_of
 from tribolab.records.runs import trends
 from tribolab.records.surfaces.hurst_words import hurst_verdict, is_steep
 from tribolab.records.surfaces.roughness_words import form_in_words, roughness_u95
@@ -183,7 +187,8 @@ def environment(folder: Path) -> jinja2.Environment:
         "stress_interval": stress_interval,
         "shear_stress_u95": shear_stress_u95,
         "roughness_u95": roughness_u95,
-        "NORMAL": wording.NORMAL,
+        "NORMAL": NORMAL,
+        "wider_error": _wider_error,
         "budget_shares": budget_shares,
         "conditions": conditions,
         "oscillating": oscillation_text,
@@ -197,6 +202,15 @@ def environment(folder: Path) -> jinja2.Environment:
         "SYMBOLS": wording.SYMBOLS,
     }
     return jinja
+
+
+def _wider_error(row: Row, name: str, ending: str) -> float | None:
+    """Return the larger error of a segment in its row, over its path or beyond it."""
+
+    def column(key: str) -> np.ndarray:
+        return np.array(number_of(row, key), float)
+
+    return wording.plain_value(float(wider_error(column, name, ending)))
 
 
 def asset(name: str) -> str:

@@ -1,4 +1,4 @@
-"""Empirical error of a mean, from the means of blocks of the record."""
+"""Error of a mean from the scatter of block means: a check on the other estimates."""
 
 from __future__ import annotations
 
