@@ -25,9 +25,9 @@ from tribolab.app.run import run_campaign  # noqa: E402 - as above
 from tribolab.reading.netcdf.netcdf import read_groups  # noqa: E402 - as above
 from tribolab.records.part_records import CurveRecord  # noqa: E402 - as above
 from tribolab.records.runs.traces import page_trace, trace_size  # noqa: E402 - as above
-from tribolab.report.live.curves import FrictionOverSpeed, card_figures  # noqa: E402 - as above
-from tribolab.report.live.shown import shown_figures  # noqa: E402 - as above
 from tribolab.report.page.page import write_page  # noqa: E402 - as above
+from tribolab.report.page_figures.curves import FrictionOverSpeed, card_figures  # noqa: E402 - as above
+from tribolab.report.page_figures.shown import shown_figures  # noqa: E402 - as above
 
 _PAINTED = (
     "new Promise(done => requestAnimationFrame(() => requestAnimationFrame("

@@ -18,7 +18,7 @@ from tribolab.lubrication.viscosity import liquid_viscosity
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.models.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
-from tribolab.report.live.joint import joint_specs
+from tribolab.report.page_figures.joint import joint_specs
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
 

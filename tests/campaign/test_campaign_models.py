@@ -30,7 +30,7 @@ from tribolab.records.models.model_words import is_described, judgement, stress_
 from tribolab.records.part_records import ModelRecord
 from tribolab.records.parts import ModelOutcome
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.models import model_specs
+from tribolab.report.page_figures.models import model_specs
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.studies import xu2026

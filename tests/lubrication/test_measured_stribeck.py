@@ -17,7 +17,7 @@ from tribolab.reading.run_files import read
 from tribolab.reading.runs.logs import group_files
 from tribolab.records.frames import friction_columns, rows_of
 from tribolab.records.runs.run_facts import friction_facts
-from tribolab.report.live.points import run_points
+from tribolab.report.page_figures.points import run_points
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.truth import read_truth
 

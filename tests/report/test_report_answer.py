@@ -7,12 +7,12 @@ import pytest
 from tribolab.records.parts import CurveOutcome, RunOutcome
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.report.document.document import state_of, verdict
-from tribolab.report.live.curves import curve_label
-from tribolab.report.live.points import RunPoint, of_curve, run_points
-from tribolab.report.live.starts import static_figures
 from tribolab.report.page.doubts import doubts
 from tribolab.report.page.key_numbers import friction_numbers
 from tribolab.report.page.run_list import listed_runs
+from tribolab.report.page_figures.curves import curve_label
+from tribolab.report.page_figures.points import RunPoint, of_curve, run_points
+from tribolab.report.page_figures.starts import static_figures
 
 CHECK = {"check": "friction_sign", "status": "fail", "decision": "", "message": "it drives"}
 SEM = {"friction_coefficient_U95": 0.02, "runs": 2}

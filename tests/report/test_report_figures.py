@@ -20,8 +20,8 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.report.figures.choice import wanted
-from tribolab.report.live.curves import FrictionOverSpeed, card_figures
 from tribolab.report.other_tables import write_other_tables
+from tribolab.report.page_figures.curves import FrictionOverSpeed, card_figures
 from tribolab.report.results import write_report
 from tribolab.report.slowest import slow_segments
 from tribolab.report.table_format import table_format

@@ -1,1 +1,1 @@
-"""Implementation of the commands."""
+"""What each command of the terminal does: questions to the user, tables and messages."""

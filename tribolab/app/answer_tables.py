@@ -33,8 +33,8 @@ def _table(*headings: str) -> Table:
 def _starts_or_ramps(outcome: Outcome) -> Table | None:
     """Return static friction after rests, or the extremes of ramps; None for other tests."""
     # imported late for a quick start
-    from tribolab.report.live.ramps import ramp_specs
-    from tribolab.report.live.starts import static_figures
+    from tribolab.report.page_figures.ramps import ramp_specs
+    from tribolab.report.page_figures.starts import static_figures
 
     runs = outcome.runs[:_MAX_ROWS]
     entries = [outcome.store.get("run", run.name, RunRecord) for run in runs]

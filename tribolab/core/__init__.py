@@ -1,1 +1,1 @@
-"""Basic tools for all subpackages."""
+"""What every other package needs: errors, limits, provenance, wording."""

@@ -1,1 +1,1 @@
-"""Figures: one description per subject, drawn for publications and for the page."""
+"""What each figure shows, as a description that `tribolab.plot` and the page both draw."""

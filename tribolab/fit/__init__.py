@@ -1,4 +1,4 @@
-"""Comparison of measured curves with computed ones."""
+"""Shear stress and its error, from fits of computed to measured Stribeck curves."""
 
 from __future__ import annotations
 

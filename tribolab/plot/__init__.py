@@ -1,4 +1,4 @@
-"""Figures: one function per figure, a result in, a matplotlib Figure out.
+"""Drawing for notebooks and papers: one function per figure, a result in, a Figure out.
 
 Each function also describes its figure without drawing it: `tribolab.plot.stribeck.spec(curve)`.
 """

@@ -1,1 +1,1 @@
-"""Typed records of runs, curves, surfaces and models."""
+"""The results of one run, curve, surface or model in a short form, for tables and the page."""

@@ -1,1 +1,1 @@
-"""The report page, report.json and the tables."""
+"""What a campaign leaves behind: the page report.html, report.json and the tables."""

@@ -37,18 +37,18 @@ from tribolab.report.figures.stage import (
     figure_task,
     key_of,
 )
-from tribolab.report.live.along import MAX_RUNS, Along, along_figures, along_of
-from tribolab.report.live.compared import comparisons
-from tribolab.report.live.contributions import contribution_figures
-from tribolab.report.live.curves import FrictionOverSpeed, card_figures, load_figures
-from tribolab.report.live.gather import Subject, begun_live_figures, figure_subjects
-from tribolab.report.live.loads import over_load_figures
-from tribolab.report.live.points import RunPoint, run_points
-from tribolab.report.live.shown import shown_figures
-from tribolab.report.live.starts import static_figures
-from tribolab.report.live.traction import traction_figures
 from tribolab.report.page.page import prepare_page, write_page
 from tribolab.report.page.reviewing import review_data
+from tribolab.report.page_figures.along import MAX_RUNS, Along, along_figures, along_of
+from tribolab.report.page_figures.compared import comparisons
+from tribolab.report.page_figures.contributions import contribution_figures
+from tribolab.report.page_figures.curves import FrictionOverSpeed, card_figures, load_figures
+from tribolab.report.page_figures.gather import Subject, begun_page_figures, figure_subjects
+from tribolab.report.page_figures.loads import over_load_figures
+from tribolab.report.page_figures.points import RunPoint, run_points
+from tribolab.report.page_figures.shown import shown_figures
+from tribolab.report.page_figures.starts import static_figures
+from tribolab.report.page_figures.traction import traction_figures
 from tribolab.report.tables import SEVERITIES
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def write_report(
 
     rows = model_rows_of(models)
     subjects = figure_subjects(outcome, shown, list(rows.values()), modes, fitted)
-    making = begun_live_figures(subjects, store, executor)
+    making = begun_page_figures(subjects, store, executor)
     # while workers draw
     write_tables(outcome, shown, surfaces, rows)
     prepare_page()

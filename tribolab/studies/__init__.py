@@ -1,4 +1,4 @@
-"""Parameter sets named after their papers, and comparisons with published numbers."""
+"""Systems measured in published papers: their parameters, and their numbers to compare with."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from tribolab.core.wording import force_text, many
 from tribolab.records.judgement import check_words, is_bad, why
 from tribolab.records.verdict import uncertain_mean, uncertain_words
-from tribolab.report.live.curves import system_name
+from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
 
 _GRAVE = ("error", "fail", "suspect")

@@ -10,7 +10,7 @@ from typing import Any
 from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import force_text, many
 from tribolab.records.wording import error_text
-from tribolab.report.live.curves import system_name
+from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
 
 _MIN_SHARE = 0.005  # share of the variance below which a part is not listed

@@ -18,9 +18,9 @@ from tribolab.records.parts import Row, number_of
 from tribolab.records.runs.running_in_record import RunningIn, length_text
 from tribolab.records.surfaces.roughness_words import roughness_u95
 from tribolab.records.wording import error_text
-from tribolab.report.live.curves import system_name
-from tribolab.report.live.points import point_error
 from tribolab.report.page.in_words import by_speed, half_speed
+from tribolab.report.page_figures.curves import system_name
+from tribolab.report.page_figures.points import point_error
 from tribolab.report.plain import plain_speed
 
 

@@ -16,8 +16,6 @@ from markupsafe import Markup
 from tribolab.core.untyped import Json
 from tribolab.records.packed import deflated
 from tribolab.records.runs.traces import script_json
-from tribolab.report.live.points import RunPoint
-from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.doubts import doubts
 from tribolab.report.page.glossary import words_of
 from tribolab.report.page.run_list import listed_runs
@@ -25,6 +23,8 @@ from tribolab.report.page.scan_list import listed_scans
 from tribolab.report.page.sections import shown_sections
 from tribolab.report.page.templating import environment, framing, library
 from tribolab.report.page.views import views
+from tribolab.report.page_figures.points import RunPoint
+from tribolab.report.page_figures.shown import ShownFigure
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Catalogue

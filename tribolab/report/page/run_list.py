@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from tribolab.core.wording import MINUS
 from tribolab.records.judgement import check_words, is_bad, status_word, why
 from tribolab.records.wording import UNITS, error_text
-from tribolab.report.live.points import MAX_SPEED_RATIO, RunPoint, at_speed
 from tribolab.report.page.sparkline import spark_path
+from tribolab.report.page_figures.points import MAX_SPEED_RATIO, RunPoint, at_speed
 from tribolab.report.plain import plain_speed
 
 _ODD = "odd"

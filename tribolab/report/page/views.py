@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.figures.spec import KeyTable
-from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.key_numbers import friction_numbers, roughness_numbers, settled_numbers
+from tribolab.report.page_figures.shown import ShownFigure
 
 _TITLES = {
     "curve": "µ vs. speed",

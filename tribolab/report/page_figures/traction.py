@@ -8,7 +8,7 @@ from tribolab.core.wording import many, speed_text
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, axis_of
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Row, number_of
-from tribolab.report.live.curves import FrictionOverSpeed, labels_of, system_name, systems
+from tribolab.report.page_figures.curves import FrictionOverSpeed, labels_of, system_name, systems
 
 _MU, _RATIO, _ROLLING = "friction_coefficient", "slide_roll_ratio", "rolling_speed_m_s"
 

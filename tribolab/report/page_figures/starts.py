@@ -16,7 +16,7 @@ from tribolab.records.parts import Row, RunOutcome, number_of
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.starts import starts_of
 from tribolab.records.wording import error_text
-from tribolab.report.live.curves import system_name
+from tribolab.report.page_figures.curves import system_name
 
 _HEADS = "Condition", "Load", "Hold time (s)", "Static µ", "Kinetic µ", "Starts"
 _SAME_REST = 1.05  # largest ratio of rest times that count as equal

@@ -18,8 +18,14 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.wording import error_text
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.points import RunPoint, at_speed, describe_point, of_curve, point_error
-from tribolab.report.live.record import Band
+from tribolab.report.page_figures.points import (
+    RunPoint,
+    at_speed,
+    describe_point,
+    of_curve,
+    point_error,
+)
+from tribolab.report.page_figures.record import Band
 from tribolab.report.plain import listed, plain_speed
 
 if TYPE_CHECKING:

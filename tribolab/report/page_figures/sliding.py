@@ -29,7 +29,7 @@ from tribolab.figures.subjects.slip import cumulative, waveform_map
 from tribolab.figures.subjects.slip_spectrum import power_levels
 from tribolab.records.models.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
-from tribolab.report.live.curves import distinguish_media, labels_of, system_name
+from tribolab.report.page_figures.curves import distinguish_media, labels_of, system_name
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import Slow, lowest_loads
 

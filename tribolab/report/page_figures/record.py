@@ -13,7 +13,7 @@ from tribolab.core.provenance import sha256_of
 from tribolab.core.wording import explain
 from tribolab.records.parts import Notice
 from tribolab.report.code import code_of_figures
-from tribolab.report.live.shown import ShownFigure
+from tribolab.report.page_figures.shown import ShownFigure
 
 
 class Band(NamedTuple):
@@ -25,7 +25,7 @@ class Band(NamedTuple):
 
 
 @dataclass(frozen=True)
-class LiveRecord:
+class PageRecord:
     """Figures made from data files, and model bands by name of the curve."""
 
     figures: tuple[ShownFigure, ...] = ()
@@ -33,22 +33,22 @@ class LiveRecord:
 
 
 @dataclass(frozen=True)
-class LiveTask:
+class PageTask:
     """Figures of one kind to make; `make` takes the results folder and can be pickled."""
 
     name: str
-    make: Callable[[Path], LiveRecord]
+    make: Callable[[Path], PageRecord]
     folder: Path
     fingerprint: str
 
 
-def live_task(
+def page_task(
     name: str,
-    make: Callable[[Path], LiveRecord],
+    make: Callable[[Path], PageRecord],
     shaping: object,
     files: Sequence[str],
     store: Store,
-) -> LiveTask:
+) -> PageTask:
     """Return a task with the checksum of everything that affects its figures.
 
     Parameters
@@ -66,21 +66,21 @@ def live_task(
     """
     identities = [store.identity(file) for file in files]
     fingerprint = sha256_of([code_of_figures(), name, repr(shaping), identities])
-    return LiveTask(name, make, store.folder, fingerprint)
+    return PageTask(name, make, store.folder, fingerprint)
 
 
-class LiveFigures(Recorded[LiveTask, LiveRecord, Notice]):
+class PageFigures(Recorded[PageTask, PageRecord, Notice]):
     """Stage of the figures that the page draws."""
 
     name = "page"
     kind = "live"
-    record = LiveRecord
+    record = PageRecord
 
     @staticmethod
-    def work(task: LiveTask) -> LiveRecord:
+    def work(task: PageTask) -> PageRecord:
         """Make figures of one kind."""
         return task.make(task.folder)
 
-    def failed(self, task: LiveTask, error: BaseException) -> Notice:
+    def failed(self, task: PageTask, error: BaseException) -> Notice:
         """Return the reason why figures could not be made."""
         return Notice("error", "", f"figures of {task.name}", explain(error)[0])

@@ -14,7 +14,7 @@ from tribolab.core.wording import many
 from tribolab.figures.spec import FigureSpec, safe
 from tribolab.figures.subjects.fits import joint_fit
 from tribolab.records.models.joint_record import JointRecord
-from tribolab.report.live.curves import system_name
+from tribolab.report.page_figures.curves import system_name
 
 
 class _Fitted(NamedTuple):

@@ -17,13 +17,13 @@ from tribolab.records.models.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.joint import joint_specs
-from tribolab.report.live.models import bands_of_models, model_specs
-from tribolab.report.live.ramps import MAX_RUNS, has_ramps, ramp_specs
-from tribolab.report.live.record import Band, LiveFigures, LiveRecord, live_task
-from tribolab.report.live.shown import shown_figures
-from tribolab.report.live.sliding import Judged, sliding_specs
-from tribolab.report.live.surfaces import surface_specs
+from tribolab.report.page_figures.joint import joint_specs
+from tribolab.report.page_figures.models import bands_of_models, model_specs
+from tribolab.report.page_figures.ramps import MAX_RUNS, has_ramps, ramp_specs
+from tribolab.report.page_figures.record import Band, PageFigures, PageRecord, page_task
+from tribolab.report.page_figures.shown import shown_figures
+from tribolab.report.page_figures.sliding import Judged, sliding_specs
+from tribolab.report.page_figures.surfaces import surface_specs
 from tribolab.report.slowest import slow_segments
 
 if TYPE_CHECKING:
@@ -33,9 +33,9 @@ Make = Callable[[Path], Sequence[FigureSpec]]
 Bands = Callable[[Path], dict[str, Band]]
 
 
-def begun_live_figures(
+def begun_page_figures(
     subjects: Sequence[Subject], store: Store, executor: Executor | None = None
-) -> Callable[[], tuple[list[LiveRecord], list[Notice]]]:
+) -> Callable[[], tuple[list[PageRecord], list[Notice]]]:
     """Start the page's figures that need data files; the returned function waits for them.
 
     Parameters
@@ -48,22 +48,22 @@ def begun_live_figures(
         Executor; without one the figures are made in this process.
     """
     tasks = [
-        live_task(
+        page_task(
             subject.name,
-            partial(_live_record, subject.make, subject.bands),
+            partial(_page_record, subject.make, subject.bands),
             subject.shaping,
             subject.files,
             store,
         )
         for subject in subjects
     ]
-    making = begun(LiveFigures(store, tasks), executor)
+    making = begun(PageFigures(store, tasks), executor)
     return lambda: done_and_failed(making())
 
 
-def _live_record(make: Make, bands: Bands | None, folder: Path) -> LiveRecord:
+def _page_record(make: Make, bands: Bands | None, folder: Path) -> PageRecord:
     shown = shown_figures(make(folder))
-    return LiveRecord(shown, bands(folder) if bands is not None else {})
+    return PageRecord(shown, bands(folder) if bands is not None else {})
 
 
 class Subject(NamedTuple):

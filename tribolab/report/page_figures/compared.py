@@ -11,14 +11,14 @@ from tribolab.figures.subjects.curves import FRICTION_AXIS, SPEED_AXIS
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
 from tribolab.records.wording import error_text
-from tribolab.report.live.curves import (
+from tribolab.report.page_figures.curves import (
     FrictionOverSpeed,
     distinguish_media,
     labels_of,
     system_name,
     systems,
 )
-from tribolab.report.live.points import RunPoint, of_curve
+from tribolab.report.page_figures.points import RunPoint, of_curve
 from tribolab.report.plain import plain_speed
 
 _SHARE = Axis("µ / maximum of µ")

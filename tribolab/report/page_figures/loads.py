@@ -6,8 +6,8 @@ from tribolab.core.wording import is_dry
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.records.parts import Row, number_of
-from tribolab.report.live.curves import FrictionOverSpeed, system_name, systems
-from tribolab.report.live.points import MAX_SPEED_RATIO, point_error
+from tribolab.report.page_figures.curves import FrictionOverSpeed, system_name, systems
+from tribolab.report.page_figures.points import MAX_SPEED_RATIO, point_error
 from tribolab.report.plain import plain_speed
 
 _MIN_LOADS = 2

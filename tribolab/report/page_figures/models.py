@@ -22,8 +22,8 @@ from tribolab.records.models.model_words import shear_stress_u95, stress_interva
 from tribolab.records.parts import number_of
 from tribolab.records.wording import error_text
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.curves import system_name
-from tribolab.report.live.record import Band
+from tribolab.report.page_figures.curves import system_name
+from tribolab.report.page_figures.record import Band
 from tribolab.report.plain import plain_speed
 
 if TYPE_CHECKING:

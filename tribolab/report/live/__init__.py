@@ -1,1 +1,0 @@
-"""Data of the figures that the page draws itself."""
