@@ -177,5 +177,7 @@ def _signed_percent(share: float | None) -> str:
     """Return a deviation in percent with its sign, with one decimal below ten percent."""
     if share is None:
         return ""
+    if abs(share) < 0.0005:  # neither +0.0 nor -0.0
+        return "0.0 %"
     text = f"{100 * share:+.{1 if abs(share) < 0.0995 else 0}f} %"
     return text.replace("-", MINUS)
