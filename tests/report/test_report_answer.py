@@ -191,7 +191,7 @@ def test_runs_are_listed_worst_first_with_their_deviation_from_usable_repeats():
         ("0.9", "+73 %"),
         ("0.6", "+15 %"),
         ("0.5", "−3.8 %"),
-        ("0.52", "+0.0 %"),
+        ("0.52", "0.0 %"),
         ("0.4", ""),
     ]
     assert [row.state for row in listed.rows[:2]] == ["rejected", "odd"]
