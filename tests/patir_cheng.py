@@ -8,11 +8,11 @@ from scipy.special import ndtr
 from tribolab.lubrication.factors import FactorTable, FlowFactors, RoughBody, check_rough_body
 from tribolab.units.conversion import positive
 
-_CONTACT = 1 / 300  # gap in h_rms below which no fluid is sheared
+_CONTACT = 1 / 300  # gap over h_rms below which no fluid is sheared
 
 
 def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary") -> FlowFactors:
-    """Return flow and friction factors of Patir and Cheng for isotropic Gaussian roughness.
+    """Return the flow and friction factors of Patir and Cheng, for isotropic Gaussian roughness.
 
     Notes
     -----
@@ -44,7 +44,7 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
         1.899 * nominal**0.98 * np.exp(-0.92 * nominal + 0.05 * low**2),
         1.126 * np.exp(-0.25 * nominal),
     )
-    shear[:2] = 0.0  # constant below, where there is no flow
+    shear[:2] = 0.0  # there is no flow at the two lowest separations: keep the factors constant
     correction = 11.1 * high**2.31 * np.exp(-2.38 * high + 0.11 * high**2)
     correction = correction * (high / nominal) ** 2
     mean = _mean_gap(nominal)

@@ -1,1 +1,1 @@
-"""What every other package needs: errors, limits, provenance, wording."""
+"""Tools that every other package needs: errors, limits, provenance, wording."""

@@ -1,4 +1,4 @@
-"""Attributes of datasets that several rooms read, as typed records; a default means not stated."""
+"""Typed records of the attributes of datasets; a default value means "not stated"."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any, Self
 
 @dataclass(frozen=True)
 class Attributes:
-    """Attributes of one kind of dataset."""
+    """Base of records of dataset attributes."""
 
     @classmethod
     def from_attrs(cls, attrs: Mapping[Any, Any]) -> Self:
-        """Return the record of a dataset's attributes.
+        """Return the record filled from the attributes of a dataset.
 
         >>> RunAttributes.from_attrs({"rows_are": "points", "source": "a.csv"}).rows_are
         'points'
@@ -30,7 +30,7 @@ class Attributes:
 
 @dataclass(frozen=True)
 class RunAttributes(Attributes):
-    """Attributes of a run: its reading, clocks and checks. Tables are by quantity."""
+    """Attributes of a run: how it was read, its clocks and checks; tables are by quantity."""
 
     instrument: str = ""
     recorded_at: str = ""
@@ -59,7 +59,7 @@ class RunAttributes(Attributes):
 
 @dataclass(frozen=True)
 class SegmentAttributes(Attributes):
-    """Attributes of segments and of their friction."""
+    """Attributes of a dataset of segments and their friction."""
 
     velocity_source: str = ""
     speed_from: str = ""

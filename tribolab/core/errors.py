@@ -1,4 +1,4 @@
-"""Errors shown to users: what is wrong, where, and how to fix it."""
+"""Errors shown to users: what is wrong, where, and how to correct it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ AUDIENCES = ("notebook", "terminal", "campaign")
 
 @dataclass(frozen=True)
 class Cure:
-    """Remedy of an error, worded for each audience; "" if there is none.
+    """How to correct an error, worded for each audience; "" if there is no advice.
 
     Parameters
     ----------
@@ -30,12 +30,12 @@ class Cure:
     campaign: str = ""
 
     def message_for(self, audience: str) -> str:
-        """Return the remedy worded for one audience."""
+        """Return the advice for one audience."""
         return str(getattr(self, audience))
 
 
 class TribolabError(Exception):
-    """Base of all errors that tribolab raises intentionally.
+    """Base class of all errors that tribolab raises intentionally.
 
     It contains the parts of a message; `message_for("terminal")` words it for an audience. Its text
     is worded for a notebook. Control characters for terminals are removed.
@@ -98,36 +98,36 @@ class TribolabError(Exception):
         return self.message_for("notebook")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle all parts of the error."""
+        """Return what pickle needs to restore the error."""
         return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
 class ReadError(TribolabError):
-    """A raw file could not be understood."""
+    """Error: a raw file could not be interpreted."""
 
 
 class LacksError(ReadError):
-    """A raw file lacks data that the instrument's description requires."""
+    """Error: a raw file lacks data that the description of the instrument requires."""
 
 
 class UnitError(TribolabError):
-    """A quantity has no unit, an unknown unit, or one of the wrong dimension."""
+    """Error: a quantity has no unit, an unknown unit, or one of the wrong dimension."""
 
 
 class ConfigError(TribolabError):
-    """A campaign file or an option is wrong."""
+    """Error: a campaign file or an option is wrong."""
 
 
 class AnalysisError(TribolabError):
-    """The data were read, but do not allow the requested analysis."""
+    """Error: the data were read, but do not allow the requested analysis."""
 
 
 class OutputError(TribolabError):
-    """Results could not be written."""
+    """Error: results could not be written."""
 
 
 def message_for(error: BaseException, audience: str) -> str:
-    """Return the message of an error for one audience; messages of other libraries are shortened.
+    """Return the message of any error for one audience, shortened if it is another library's.
 
     >>> message_for(ReadError("empty", where="a.csv"), "terminal")
     'a.csv: empty'
@@ -136,7 +136,7 @@ def message_for(error: BaseException, audience: str) -> str:
 
 
 def harmless(text: str) -> str:
-    r"""Return a text without characters that control a terminal, except line ends.
+    r"""Return a text without control characters, except line ends.
 
     >>> harmless("\x1b[31mred\tline\nnext")
     '?[31mred line\nnext'
@@ -160,7 +160,7 @@ def brief(error: BaseException, most: int = 300) -> str:
 
 
 def shown(value: object, most: int = 80) -> str:
-    r"""Return a short text of a value for a message, without characters that control a terminal.
+    r"""Return a value as a short text for messages, without control characters.
 
     >>> shown("\x1b[31mred\n"), shown("x" * 1000, 5)
     ('?[31mred?', 'xxxxx ...')
@@ -171,14 +171,14 @@ def shown(value: object, most: int = 80) -> str:
     return text if len(text) <= most else f"{text[:most]} ..."
 
 
-_MAX_LETTERS = 60  # letters of a word; names in damaged files may have any length
+_MAX_LETTERS = 60  # longest word compared; names in damaged files can have any length
 
 
 _LISTED = 20
 
 
 def nearest(word: str, known: Iterable[str], most: int | None = _LISTED) -> str:
-    """Return a hint with the known words nearest to `word`, for the end of an error message.
+    """Return a hint with the known words most similar to `word`, for the end of an error message.
 
     If none is near, it lists the known words: at most `most`, None for all.
 

@@ -1,4 +1,4 @@
-"""Short HTML of a result in a notebook: a heading and a list."""
+"""Short HTML of a result in a notebook: a heading and a list of entries."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from html import escape
 
 
 def html_list(heading: str, entries: Iterable[tuple[str, object]]) -> str:
-    """Return a heading and a list of entries, each with its name in bold.
+    """Return the HTML of a heading and a list of entries, each with its name in bold.
 
     Examples
     --------

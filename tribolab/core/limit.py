@@ -1,4 +1,4 @@
-"""Record for a number that decides a result, with reason and source."""
+"""Record of a number that decides a result, with its reason and source."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limit:
-    """Number that decides a result, with unit, reason and source.
+    """A number that decides a result, with its unit, reason and source.
 
     Attributes
     ----------
@@ -35,6 +35,6 @@ class Limit:
 
 @dataclass(frozen=True)
 class Count(Limit):
-    """A limit that is a whole number: of samples, strokes, periods."""
+    """A limit that is a whole number, e.g. of samples, strokes or periods."""
 
     value: int

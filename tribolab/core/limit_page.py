@@ -1,4 +1,4 @@
-"""Page raw_data_schema/LIMITS.md with the limits of all subpackages."""
+"""Generated page raw_data_schema/LIMITS.md, which lists the limits of all subpackages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ page is made from the code, and a test keeps the two equal.
 
 
 def limits_page() -> str:
-    """Return the page with all `Limit` records of the package's modules called ``limits``.
+    """Return the text of the page: all `Limit` records of the modules called ``limits``.
 
     Examples
     --------

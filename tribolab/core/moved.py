@@ -1,4 +1,4 @@
-"""Old import paths of moved modules, which work for one release with a warning."""
+"""Old import paths of modules that have moved; they work for one release, with a warning."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MOVED = {
 
 
 class _MovedModules(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Import finder that returns a module at its new path for an old one."""
+    """Import finder that loads a moved module from its new path."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
@@ -45,11 +45,11 @@ class _MovedModules(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         return sys.modules[new]
 
     def exec_module(self, module: ModuleType) -> None:
-        module.__spec__ = self._spec  # the import system has just set the path of the old module
+        module.__spec__ = self._spec  # the import system has just set the old path here
 
 
 def new_path(old: str) -> str:
-    """Return the present path of a moved module; "" if it has not moved.
+    """Return the new path of a moved module; "" if it has not moved.
 
     Examples
     --------
@@ -65,7 +65,7 @@ def new_path(old: str) -> str:
 
 
 def accept_old_paths() -> None:
-    """Make old import paths of moved modules work.
+    """Make the old import paths of moved modules work.
 
     The finder is placed first, because the parent package of an old path has the new folder.
     """

@@ -21,17 +21,17 @@ def sha256_of_file(path: str | Path) -> str:
 
 
 def sha256_of(value: Any) -> str:
-    """Return the SHA-256 of any JSON value, independent of the order of keys."""
+    """Return the SHA-256 of a JSON value, independent of the order of its keys."""
     text = json.dumps(value, sort_keys=True, default=str, ensure_ascii=False)
     return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()
 
 
-# C0, C1, line and paragraph separators, and characters that override text direction
+# control characters (C0, C1), line and paragraph separators, overrides of text direction
 _STEERS = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
 
 
 def as_text(path: str | Path) -> str:
-    r"""Return a path or name as text without characters that control a terminal or page.
+    r"""Return a path or name as text without characters that control a terminal or a page.
 
     Bytes that are not UTF-8, control characters and direction overrides are escaped.
 
@@ -47,7 +47,7 @@ def as_text(path: str | Path) -> str:
 
 
 def escape_controls(text: str) -> str:
-    r"""Return a text with escaped control characters, except tabs and line ends.
+    r"""Return a text with its control characters escaped, except tabs and line ends.
 
     Examples
     --------
@@ -58,8 +58,8 @@ def escape_controls(text: str) -> str:
 
 
 def history_line(action: str) -> str:
-    """Return a line for the ``history`` attribute: time in UTC, version, action."""
-    # imported late: the installed package is looked up
+    """Return a line for the ``history`` attribute: UTC time, version, action."""
+    # imported late: the import looks up the installed package
     from tribolab.version import __version__
 
     now = dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
@@ -73,7 +73,7 @@ def made(
     source_sha256: str = "",
     config_sha256: str = "",
 ) -> dict[str, str]:
-    """Return the provenance attributes of a product.
+    """Return the attributes that state how a result was made.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def made(
     >>> sorted(made("contact of the reference system", source="Xu et al. (2026)"))
     ['Conventions', 'history', 'source', 'tribolab_version']
     """
-    # imported late: the installed package is looked up
+    # imported late: the import looks up the installed package
     from tribolab.version import __version__
 
     attrs = {
@@ -105,7 +105,7 @@ def made(
 
 
 def join_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
-    """Return ``source`` and ``source_sha256`` of a product of several others.
+    """Return ``source`` and ``source_sha256`` of a result made from several others.
 
     Checksums are left out if one of the products has none, to keep names and checksums paired.
 
@@ -131,7 +131,7 @@ def join_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
 
 
 def provenance(sources: Iterable[str | Path], action: str) -> dict[str, str]:
-    """Return the provenance attributes of a product made from raw files.
+    """Return the provenance attributes of a result made from raw files.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
-"""Types for dictionaries of unknown content, kept in one place."""
+"""Types for dictionaries with unknown contents."""
 
 from __future__ import annotations
 
 from typing import Any
 
-# Object of JSON or TOML, or attributes of a dataset, while it is read or written. Its
-# content is validated by a schema, or by the record it comes from.
+# Object from JSON or TOML, or attributes of a dataset, while they are read or written. The
+# contents are validated by a schema, or by the record from which they are made.
 Json = dict[str, Any]
 
 # Keyword arguments collected before a call; the called function checks their types.

@@ -1,4 +1,4 @@
-"""Limits of validity of the theory.
+"""Validity limits of the theories, and warnings if a result exceeds them.
 
 Every model result has the attributes ``validity`` ("pass" or "suspect") and ``validity_reasons``
 from `examine`; campaigns report them as findings. Beyond the second, wider limit an error is
@@ -16,12 +16,12 @@ import numpy as np
 from tribolab.core.errors import AnalysisError
 
 _PASS, _SUSPECT = "pass", "suspect"
-TINY = float(np.finfo(float).tiny)  # denominators may be 0
+TINY = float(np.finfo(float).tiny)  # lower limit of denominators that can be 0
 
 
 @dataclass(frozen=True)
 class ValidityLimit:
-    """Approximation of the theory with its limits.
+    """Limits within which an approximation of the theory is valid.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ LIMITS = {
     "thickening": ValidityLimit(
         "rise of an oil's viscosity at the highest pressure, in its logarithm",
         0.1,  # increase of drag in the middle of the contact; the film follows later
-        np.inf,  # warning only: the liquid is not known, and water does not thicken under pressure
+        np.inf,  # warns only: the liquid may be water, which does not thicken under pressure
         "the viscosity is taken to be the same at every pressure, as between soft bodies",
         "take a smaller load or a softer body, or a theory of elastohydrodynamics between hard "
         "ones",
@@ -94,8 +94,8 @@ LIMITS = {
     ),
     "heating": ValidityLimit(
         "temperature rise in K in the contact spots of sliding rubber",
-        10.0,  # a relaxation is about two times as fast
-        np.inf,  # warning only: friction falls by an amount that is not computed
+        10.0,  # the relaxation of rubber becomes about two times as fast
+        np.inf,  # warns only: the decrease of friction is not computed
         "the modulus is that of the rubber at rest, without heat by friction",
         "take lower speeds, or the modulus at the temperature of the contact",
     ),
@@ -112,7 +112,7 @@ LIMITS = {
 
 
 def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
-    """Compare numbers with the limits of the theory, and return validity attributes.
+    """Compare numbers with the validity limits, and return the validity attributes of a result.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
 
 
 def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
-    """Combine the validity attributes of several results; each reason once.
+    """Return the combined validity attributes of several results, without repeated reasons.
 
     Examples
     --------
@@ -175,5 +175,5 @@ def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
 
 
 def reasons_of(attrs: Mapping[Any, Any]) -> list[str]:
-    """Return the reasons why a result is doubtful, from its attributes."""
+    """Return why a result is outside the validity of the theory, from its attributes."""
     return [reason for reason in str(attrs.get("validity_reasons", "")).split(" | ") if reason]

@@ -1,4 +1,4 @@
-"""Formats of numbers, counts, speeds and reasons in all texts."""
+"""Formats of numbers, counts, speeds and reasons in texts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Return a number with the given significant digits, without needless zeros or exponents.
+    """Return a number with the given significant digits, without superfluous zeros or exponents.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def aligned(value: float, digits: int = 3) -> str:
-    """Return a number with the given significant digits and trailing zeros, for columns.
+    """Return a number with the given significant digits, with trailing zeros for columns.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def aligned(value: float, digits: int = 3) -> str:
 
 
 def speed_text(speed: float) -> str:
-    """Return a sliding speed [m/s] as text with a suitable prefix.
+    """Return a sliding speed [m/s] as text with a suitable unit prefix.
 
     A speed just below 1 um/s is given in um/s, since its set-point was 1 um/s.
 
@@ -68,7 +68,7 @@ def speed_text(speed: float) -> str:
 
 
 def force_text(force: float | None) -> str:
-    """Return a force [N] as text, e.g. ``"31 N"``; None is an unknown force."""
+    """Return a force [N] as text, e.g. ``"31 N"``; None means an unknown force."""
     if force is None or not math.isfinite(force):
         return "load unknown"
     return f"{number(force)} N"
@@ -78,7 +78,7 @@ LOAD_STATED, LOAD_MEASURED, LOAD_VARIES = "stated", "measured", "varies"
 
 
 def load_label(load: float | None) -> float | None:
-    """Load [N] that identifies runs and their curve, rounded to four digits.
+    """Return the load [N] that identifies runs and their curve, rounded to four digits.
 
     >>> load_label(14.709975), load_label(None)
     (14.71, None)
@@ -87,7 +87,7 @@ def load_label(load: float | None) -> float | None:
 
 
 def load_text(load: float | None, load_from: str) -> str:
-    """Load [N] of a run or curve as text, marked if measured rather than set.
+    """Return the load [N] of a run or curve as text, marked if it was measured and not set.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def load_text(load: float | None, load_from: str) -> str:
 
 
 def span(values: Iterable[float | None], unit: str = "") -> str:
-    """Return a range as text, or one number if both ends look the same.
+    """Return a range as text, or a single number if both ends would look equal.
 
     Examples
     --------
@@ -153,7 +153,7 @@ def percent(share: float | None) -> str:
 
 
 def many(count: int, word: str) -> str:
-    """Count with its noun.
+    """Return a count with its noun.
 
     Examples
     --------
@@ -172,7 +172,7 @@ def size(count: int) -> str:
 
 
 class Count(int):
-    """Count that is formatted with the matching noun.
+    """Count that formats itself with the matching noun.
 
     Examples
     --------
@@ -181,7 +181,7 @@ class Count(int):
     """
 
     def __format__(self, nouns: str) -> str:
-        """Write the number and the singular or plural of "one|many"."""
+        """Return the count with the singular or plural of "one|many"."""
         singular, _, more = nouns.partition("|")
         return f"{int(self)} {singular if self == 1 else more}" if nouns else str(int(self))
 
@@ -190,7 +190,7 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def explain(error: BaseException) -> tuple[str, str]:
-    """Return one line with the message of an error, and its class name.
+    """Return the message of an error on one line, and the name of its class.
 
     The message is worded for the records of a campaign; unexpected errors include their place.
     """
@@ -214,7 +214,7 @@ _DRY = {"dry", "none", "air"}
 
 
 def is_dry(medium: str) -> bool:
-    """Return whether the name of a medium means that there is no fluid.
+    """Return whether the name of a medium means a dry contact.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Mixed lubrication of rough line and point contacts: flow factors, solver, curves."""
+"""Mixed lubrication of rough line and point contacts: flow factors, films, Stribeck curves."""
 
 from __future__ import annotations
 

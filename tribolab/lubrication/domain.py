@@ -1,4 +1,4 @@
-"""Scales and mesh for a speed, and the drag outside the solved domain."""
+"""Scales and mesh of a line contact at one speed, and the drag outside the solved domain."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from tribolab.lubrication.mesh import graded_mesh
 from tribolab.lubrication.mixed import Problem, Solution
 from tribolab.lubrication.parameters import Liquid
 
-_INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in units of the reach of the film
-_CLASS_RATIO = 100.0  # films within this factor share a mesh
-_FINE_EDGE, _EXTRA_CELLS = 5e-3, 0.3  # edge for more cells, relative increase per decade
-SHORTEST = 1.5  # smallest distance of the liquid's start from the middle, in half-widths
+_INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in units of the reach (see `layout`)
+_CLASS_RATIO = 100.0  # films whose thicknesses differ by less than this factor share a mesh
+_FINE_EDGE, _EXTRA_CELLS = 5e-3, 0.3  # edge width below which cells are added, share per decade
+SHORTEST = 1.5  # least distance from the middle to the start of the liquid, in half-widths
 
 
 class MeshLayout(NamedTuple):
-    """Parameters of the mesh of a speed except its number of cells, for `graded_mesh`."""
+    """Parameters of `graded_mesh` for one speed, except the number of cells."""
 
     edge: float
     inlet: float
@@ -34,7 +34,7 @@ class MeshLayout(NamedTuple):
 def layout(
     film: float, decay: float, domain: float, inlet_length: float, flooded: bool = False
 ) -> MeshLayout:
-    """Choose the mesh for the film of one speed, independent of other speeds.
+    """Return the mesh parameters for a film thickness, independently of other speeds.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def layout(
     lowest = _CLASS_RATIO ** np.floor(np.log(max(film, 1e-30)) / np.log(_CLASS_RATIO))
     reach = np.sqrt(1 + max(lowest * _CLASS_RATIO, 1.0)) * domain
     size = float(np.sqrt(max(lowest, 1.0)))
-    # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
+    # outside a Hertz contact the gap increases as 1.9 g (x/a - 1)^1.5
     edge = (max(decay, lowest) / 1.9) ** (2 / 3)
     open_end = np.isinf(inlet_length)
     return MeshLayout(
@@ -71,7 +71,7 @@ def layout(
 
 
 def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
-    """Return the film thickness [m] between smooth surfaces: maximum of soft and rigid limit.
+    """Return the film thickness [m] of smooth surfaces: the larger of the soft and rigid limits.
 
     Notes
     -----
@@ -84,18 +84,18 @@ def film_estimate(contact: LineContact, viscosity: float, load: float, speed: fl
 
 
 def thinned_film(contact: LineContact, liquid: Liquid, load: float, speed: float) -> float:
-    """Return the film thickness [m] by `film_estimate` for the viscosity at its own shear rate."""
+    """Return `film_estimate` [m] for the viscosity at the film's own shear rate."""
     film = film_estimate(contact, liquid.viscosity, load, speed)
     if liquid.thinning is None or not speed:
         return film
-    for _ in range(30):  # h ~ eta^0.6 and eta ~ h^(1 - n): the iteration converges
+    for _ in range(30):  # h ~ eta^0.6 and eta ~ h^(1 - n), so the iteration converges
         thin = float(liquid.thinning.pressure_flow(np.array(speed / film)))
         film = film_estimate(contact, liquid.viscosity * thin, load, speed)
     return film
 
 
 def half_width(contact: Contact, separation: Separation | None, load: float) -> float:
-    """Return the half-width b [m] of the contact: Hertz, increased by roughness."""
+    """Return the half-width b [m] of the contact: that of Hertz, increased by roughness."""
     decay = separation.decay_length if separation else 0.0
     return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
 
@@ -110,7 +110,7 @@ def lubrication_problem(
     domain: float,
     liquid: Liquid | None = None,
 ) -> Problem:
-    """Choose scales and mesh of a line contact at one load and speed.
+    """Return scales and mesh of a line contact at one load and speed.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def lubrication_problem(
     begins = inlet_length / b
     cells = _cell_count(cells, decay / gap)
     lowest = liquid.lowest_pressure if liquid else 0.0
-    if liquid and liquid.thinning:  # viscous far away: 60 half-widths, no drag beyond
+    if liquid and liquid.thinning:  # 60 half-widths suffice; drag beyond is neglected
         domain /= np.sqrt(2)
     spans = layout(film / gap, decay / gap, domain, begins, lowest < 0)
     mesh = graded_mesh(cells, *spans, contact.layer(b))
@@ -158,7 +158,7 @@ def lubrication_problem(
 
 
 def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
-    """Return Couette and pressure parts of the drag outside the solved domain, in units of g p.
+    """Return the shear and pressure parts of the drag outside the solved domain, in units of g p.
 
     Notes
     -----
@@ -175,7 +175,7 @@ def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
     if problem.thinning:
         return 0.0, 0.0
     start, end = mesh.x[0] - mesh.width[0] / 2, mesh.x[-1] + mesh.width[-1] / 2
-    full = fields.flux[0] / solution.couette  # u* = 2 J/v
+    full = fields.flux[0] / solution.couette  # film thickness at maximum pressure, u* = 2 J/v
     couette = pressure = 0.0
     ends = [(-start, film[0] - mesh.x[0] ** 2)] if np.isinf(problem.inlet_length) else []
     if problem.cavity < 0:
@@ -197,7 +197,7 @@ def _tail(power: int, start: float, constant: float) -> float:
 
 
 def _cell_count(cells: int, decay: float) -> int:
-    """Return the number of cells with the usual resolution at a narrow contact edge."""
+    """Return the number of cells that resolves a narrow contact edge as well as usual."""
     if not decay:
         return cells
     edge = (decay / 1.9) ** (2 / 3)
@@ -205,5 +205,5 @@ def _cell_count(cells: int, decay: float) -> int:
 
 
 def _rounded(value: float) -> float:
-    """Return a value rounded to two digits, so that similar loads share a mesh."""
+    """Return a value rounded to two digits, so that similar loads share one mesh."""
     return float(f"{value:.2g}")

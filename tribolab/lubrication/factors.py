@@ -1,4 +1,4 @@
-"""Flow and friction factors of a rough surface, tabulated over mean separation."""
+"""Flow and friction factors of a rough surface, tabulated over the mean separation."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
 
 PERCOLATION = 0.42  # relative contact area at which the last open channel closes
-CUTOFF = 1e-9  # m, gap below which <1/u> is cut off
+CUTOFF = 1e-9  # m, smallest gap included in the mean of 1/u
 RoughBody = Literal["stationary", "moving"]
 FACTORS = (
     "pressure_flow_factor",
@@ -33,13 +33,13 @@ FACTORS = (
     "pressure_stress_factor",
 )
 
-# Table: u - u_c from _NEAR to _FAR roughnesses above percolation (far beyond, a distribution of
-# gaps cannot be summed on its grid), and down to _LOW roughnesses below percolation.
+# Range of the table: u - u_c from _NEAR to _FAR h_rms above percolation (beyond, the grid of gaps
+# is too coarse for their distribution), and down to _LOW h_rms below percolation.
 _NEAR, _FAR, _LOW, _POINTS = 1e-5, 8.0, 1e-3, 64
 
 
 class Factors(NamedTuple):
-    """Five flow and friction factors [1] at given separations."""
+    """The five flow and friction factors [1] at given separations."""
 
     phi_p: np.ndarray
     phi_s: np.ndarray
@@ -50,7 +50,7 @@ class Factors(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FlowFactors:
-    """Flow and friction factors of one surface over mean separation; trivial if smooth.
+    """Flow and friction factors of one surface over mean separation; 1 or 0 if smooth.
 
     Made by `flow_factors` or `smooth_factors`.
 
@@ -88,7 +88,7 @@ class FlowFactors:
     slide: float = 1.0
 
     def at(self, separation: np.ndarray) -> Factors:
-        """Return the five factors [1] at mean separations u [m] (any shape), above zero."""
+        """Return the five factors [1] at mean separations u > 0 [m] (any shape)."""
         u = np.asarray(separation, dtype=float)
         if self.flow is None or self.friction is None:
             ones, zero = np.ones_like(u), np.zeros_like(u)
@@ -97,7 +97,7 @@ class FlowFactors:
         phi_f, phi_fs, *phi_fp = self.friction(u)[0]
         phi_s = self._sign * self.slide * u / self.rms_roughness * (1 - open_flow)
         drag = phi_fp[0] if phi_fp else open_flow
-        # on a moving rough body, the pressure gradient drags with the rest of u dp/dx
+        # if the rough body moves, the pressure gradient drags it with the remainder of u dp/dx
         return Factors(phi_p, phi_s, phi_f, phi_fs, (1 + self._sign) - self._sign * drag)
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -105,13 +105,13 @@ class FlowFactors:
         if self.flow is None:
             return np.ones_like(u), np.zeros_like(u), u, np.ones_like(u)
         (phi_p, part), (phi_p_slope, part_slope) = self.flow(u)
-        # (u + h phi_s)/u is phi_fp, or 2 - phi_fp if the rough body moves with its valleys
+        # (u + h_rms phi_s)/u is phi_fp, or 2 - phi_fp if the rough body moves
         carried = self._sign * self.slide
         share, rate = (1 + carried) - carried * part, -carried * part_slope
         return phi_p, phi_p_slope, u * share, share + u * rate
 
     def dataset(self, separation: str | ArrayLike | xr.DataArray) -> xr.Dataset:
-        """Return the five factors [1] by name over the dims of a separation [m]."""
+        """Return a dataset of the five factors [1] over separations [m]."""
         over = labelled(separation, "separation")
         if not np.all(over.values > 0):
             raise AnalysisError(
@@ -132,7 +132,7 @@ class FlowFactors:
         )
 
     def relative_viscosity(self, separation: np.ndarray) -> np.ndarray:
-        """Return the viscosity relative to that at rest [1] at separations [m]: 1 if Newtonian."""
+        """Return the viscosity relative to that at rest [1] at separations [m]; 1 if Newtonian."""
         return np.ones_like(separation)
 
     @property
@@ -149,7 +149,7 @@ def flow_factors(
     cutoff: str | float = CUTOFF,
     gamma: float = 0.45,
 ) -> FlowFactors:
-    """Return flow and friction factors of a rough surface by effective-medium theory.
+    """Return flow and friction factors of a rough surface, by effective-medium theory.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def flow_factors(
 def _tabulated(
     q: bytes, spectrum: bytes, percolation: float, cutoff: float, gamma: float
 ) -> FlowFactors:
-    """Return the tabulated factors of a spectrum; the last few tables are cached."""
+    """Return the table of factors for a spectrum; the last few tables are cached."""
     psd = xr.Dataset(
         {"psd_2d": ("wavenumber", np.frombuffer(spectrum))},
         coords={"wavenumber": np.frombuffer(q)},
@@ -244,7 +244,7 @@ def _tabulated(
     slope = np.sqrt(cumulative(*spectrum_arrays(psd), 3)[-1])
     closing = float(pressure_of.separation(float(np.sqrt(np.pi) * slope * erfinv(percolation))))
     above = closing + height * np.geomspace(_NEAR, _FAR, _POINTS)
-    # contact is complete below a hundredth of the cut-off
+    # contact counts as complete at separations below a hundredth of the cut-off
     lowest = max(min(_LOW * height, closing / 3), 2 * COMPLETE * cutoff)
     if lowest > closing / 2:
         raise AnalysisError(
@@ -257,7 +257,7 @@ def _tabulated(
         np.concatenate([below, above]), pressure_of, psd, percolation, cutoff, gamma
     )
     first = below.size
-    ends = 1 - percolation  # 1/d
+    ends = 1 - percolation  # 1/d with the dimension d of the effective medium
     return FlowFactors(
         rms_roughness=height,
         percolation_separation=closing,
@@ -284,14 +284,14 @@ def _tabulated(
 
 
 def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
-    """Return the factors of smooth surfaces: phi_p, phi_f, phi_fp are 1, phi_s and phi_fs 0."""
+    """Return the factors of smooth surfaces: phi_p = phi_f = phi_fp = 1, phi_s = phi_fs = 0."""
     check_rough_body(rough_body)
     return FlowFactors(0.0, 0.0, rough_body, "smooth")
 
 
 @dataclass(frozen=True, eq=False)
 class FactorTable:
-    """Table of factors: cubics in ln phi over ln(u - origin), with asymptotes at both ends.
+    """Table of factors: cubics of ln phi over ln(u - origin), with asymptotes at both ends.
 
     The cubics are monotone, or splines if the factors are known to be smooth.
 
@@ -302,13 +302,13 @@ class FactorTable:
     u: np.ndarray
     values: np.ndarray  # (factor, u)
     origin: float
-    coefficient: np.ndarray  # of 1/u^2 at infinity (factor)
-    limit: np.ndarray  # at infinity (factor)
+    coefficient: np.ndarray  # factor of 1/u^2 at large u (factor)
+    limit: np.ndarray  # value at large u (factor)
     smooth: bool = False
-    _curve: PPoly = field(init=False, repr=False)  # ln phi and its slope (2, factor)
+    _curve: PPoly = field(init=False, repr=False)  # two values: ln phi, and its slope (2, factor)
 
     def __post_init__(self) -> None:
-        """Fit the interpolating curve."""
+        """Compute the interpolating curve."""
         cubic = CubicSpline if self.smooth else PchipInterpolator
         curve = cubic(np.log(self.u - self.origin), np.log(self.values), axis=1)
         both = np.zeros((*curve.c.shape[:2], 2, len(self.values)))
@@ -316,7 +316,7 @@ class FactorTable:
         object.__setattr__(self, "_curve", PPoly(both, curve.x))
 
     def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return values and slopes over u, each (factor, shape of u)."""
+        """Return factors and their slopes over u, each (factor, shape of u)."""
         distance = np.maximum(u - self.origin, 0)
         first, last = self._curve.x[0], self._curve.x[-1]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -328,7 +328,7 @@ class FactorTable:
             value = np.exp(log_value)
             slope = value * rate / distance
             if np.any(distance == 0):
-                value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # constant if flat
+                value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # at u = origin
                 slope = np.where(distance > 0, slope, 0.0)
             end = self.u[-1]
             beyond = u > end
@@ -350,12 +350,12 @@ def _averages(
     cutoff: float,
     gamma: float,
 ) -> tuple[np.ndarray, ...]:
-    """Return phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
+    """Return phi_p, phi_fp, phi_fs and phi_f at mean separations u, as averages over P(u)."""
     pressure = pressure_of.pressure(u)
     flow, plain = gap_distributions(pressure, psd, 1.0, ("flow", "plain"), gamma, cutoff, points=8)
     gap, weight = flow["gap"].values, flow["gap_weight"].values
     touching = flow["contact_area_ratio"].values
-    # the mean of the sum itself is used, so that quadrature errors cancel in phi - 1
+    # normalise by the quadrature's own sums, so that their errors cancel in phi - 1
     total = weight.sum(axis=1) + touching
     weight, touching = weight / total[:, None], touching / total
     mean = weight @ gap
@@ -363,7 +363,7 @@ def _averages(
     conductance = _effective(gap**3, weight, touching, dimension)
     denominator = gap**3 + (dimension - 1) * conductance[:, None]
     entrained = dimension * conductance * (weight * gap / denominator).sum(axis=1)
-    # below percolation D -> u^3, and gaps below the cut-off contain no fluid
+    # gaps below the cut-off contain no fluid; the rest is D = u^3 below percolation
     fluid = np.where(gap >= cutoff, weight, 0.0)
     moved = gap * (gap - entrained[:, None]) / denominator
     correction = 3 * mean * (fluid * moved).sum(axis=1)
@@ -376,7 +376,7 @@ def _averages(
 def _effective(
     local: np.ndarray, weight: np.ndarray, touching: np.ndarray, dimension: float
 ) -> np.ndarray:
-    """Return the effective conductivity: 1 = <d s_e/D> solved for s_e; 0 if contact percolates."""
+    """Return the conductivity s_e of the medium from 1 = <d s_e/D>; 0 if the contact percolates."""
 
     def excess(log_s: np.ndarray) -> np.ndarray:
         s = np.exp(log_s)[:, None]
@@ -394,7 +394,7 @@ def _effective(
 
 
 def check_rough_body(rough_body: str) -> None:
-    """Raise an AnalysisError unless the argument is a `RoughBody`."""
+    """Raise an AnalysisError unless the argument names a valid `RoughBody`."""
     known = ["stationary", "moving"]
     if rough_body not in known:
         raise AnalysisError(

@@ -1,4 +1,4 @@
-"""Profiles of separation and pressures across a lubricated contact."""
+"""Profiles of separation and pressure across a lubricated contact."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def film_profile(
     solver: Solver | None = None,
     **options: Any,
 ) -> xr.Dataset:
-    """Return separation and pressures across the contact at one or several speeds.
+    """Return the separation and pressures across the contact, at one or several speeds.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def film_profile(
     >>> f"{1e6 * film.separation.min():.2f} um, {1e-3 * film.pressure.max():.1f} kPa"
     '5.89 um, 52.3 kPa'
     """
-    if isinstance(interface, str):  # in the last release this argument was `rough_body`
+    if isinstance(interface, str):  # argument `rough_body` of the last release
         options, interface = {"rough_body": interface, **options}, None
     warn_of_old("film_profile", options)
     parameters = parameters_of(liquid, interface or 0.0, solver, **options)
@@ -94,7 +94,7 @@ def film_profile(
 def _profile(
     system: System, force: float, v: float, point: SolvedSpeed | SolvedPoint
 ) -> xr.Dataset:
-    """Return the profile of the solution at one speed."""
+    """Return the profile at one speed from its solution."""
     side = -1 if v < 0 else 1
     x, film, solid, fluid, cavity = _centre_line(point)
     whole = solid + fluid
@@ -106,7 +106,7 @@ def _profile(
         "contact_area_ratio": real_area(system, solid, whole, system.solver.area),
     }
     x = side * x
-    # as variables: combining several speeds drops attributes that differ
+    # stored as variables, because combining speeds drops attributes that differ
     scalars = {
         "cavity_start": float(x[min(cavity, x.size - 1)]),
         **{name: getattr(point.solution, name) for name in PROOF},
@@ -127,7 +127,7 @@ def _profile(
 def _centre_line(
     point: SolvedSpeed | SolvedPoint,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
-    """Return x [m], film [m], both pressures [Pa] and start of the cavity, on the centre line."""
+    """Return x [m], film [m], both pressures [Pa] and start of the cavity on the centre line."""
     parts: tuple[np.ndarray, ...]
     if isinstance(point, SolvedSpeed):
         line, fields = point.problem, point.solution.fields
@@ -148,14 +148,14 @@ def _centre_line(
 
 
 def _flux(system: System, point: SolvedSpeed) -> float:
-    """Return the flux [m2/s] of a line contact."""
+    """Return the flux of liquid [m2/s] through a line contact."""
     problem = point.problem
     unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
     return float(point.solution.fields.flux[0] * unit)
 
 
 def _combine(films: list[xr.Dataset]) -> xr.Dataset:
-    """Return the profiles at several speeds over (sliding_speed, point), each on its own grid."""
+    """Return profiles at several speeds over (sliding_speed, point), each on its own grid."""
     rows = [f.reset_index("x").reset_coords("x").rename_dims(x="point") for f in films]
     joined = xr.concat(
         rows, "sliding_speed", data_vars="all", coords="different", compat="equals", join="outer",

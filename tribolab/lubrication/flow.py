@@ -1,4 +1,4 @@
-"""Flow between the centres of neighbouring cells, from the film between them."""
+"""Flow between the centres of neighbouring cells, from the film thickness between them."""
 
 from __future__ import annotations
 
@@ -10,30 +10,30 @@ from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.parabolas import Between
 from tribolab.lubrication.thinning import ThinnedFactors
 
-# Share of the smooth conductance u^3 that remains below percolation, so that fluid enclosed by
+# Share of the smooth conductance u^3 that is kept below percolation, so that fluid enclosed by
 # closed channels has a pressure; its flow is negligible.
 _LEAK = 1e-10
-# Film thickness in roughnesses: below the first value the film between cells is linear, because
-# flow changes by decades where channels close; above the second it is cubic through four cells.
+# Film thickness over h_rms: below the first value the film between cells is linear, because
+# flow changes by decades where channels close; above the second it is a cubic through four cells.
 _STRAIGHT, _CURVED = 0.3, 0.6
 
 
 class Flow(NamedTuple):
-    """Flow resistance and entrainment at the points of `Between`, and integrated between centres.
+    """Flow resistance and entrainment at the points of `Between`, and between cell centres.
 
     Lengths along x in b, gaps in g, pressures in p; a flux is in units of g^3 p/(12 eta b). The
     gradient of the fluid pressure is ``resistance * (entrained - flux)`` at every point: for a flux
     J the pressure rises by ``(drive - J) / conductance`` from centre to centre.
     """
 
-    film: np.ndarray  # at the points (2, n + 1)
+    film: np.ndarray  # film thickness at the points (2, n + 1)
     share: np.ndarray  # weights of the four surrounding cells in the film (2, 4, n + 1)
     resistance: np.ndarray  # 1/(u^3 phi_p) at the points (2, n + 1)
     entrained: np.ndarray  # entrained flux at the points (2, n + 1)
     conductance: np.ndarray  # from centre to centre (n + 1)
     drive: np.ndarray  # mean entrained flux, weighted by the resistance (n + 1)
-    resistance_slope: np.ndarray  # over the film (2, n + 1)
-    entrained_slope: np.ndarray  # (2, n + 1)
+    resistance_slope: np.ndarray  # derivative by the film (2, n + 1)
+    entrained_slope: np.ndarray  # derivative by the film (2, n + 1)
 
 
 def flow_between(
@@ -43,7 +43,7 @@ def flow_between(
     couette: float,
     film: np.ndarray,
 ) -> Flow:
-    """Return resistance and entrainment integrated between the centres of cells.
+    """Return flow resistance and entrainment, integrated between the centres of cells.
 
     Notes
     -----
@@ -70,7 +70,7 @@ def flow_between(
 
 
 def flux_slopes(between: Between, flow: Flow, flux: np.ndarray) -> np.ndarray:
-    """Return the derivative of the flux between centres by the films of four cells (4, n + 1)."""
+    """Return the derivatives of the flux between centres by the films of four cells (4, n + 1)."""
     steep = flow.resistance * flow.entrained_slope
     steep += (flow.entrained - flux) * flow.resistance_slope
     steep *= between.weight * flow.conductance
@@ -80,7 +80,7 @@ def flux_slopes(between: Between, flow: Flow, flux: np.ndarray) -> np.ndarray:
 def _film_between(
     between: Between, film: np.ndarray, roughness: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the film at the points, and its derivatives by the films of the four cells around."""
+    """Return the film thickness at the points, and its derivatives by the films of four cells."""
     around = film[between.cell]
     u, share = (between.share * around).sum(axis=1), between.share
     thinner = np.minimum(around[1], around[2])
@@ -91,7 +91,7 @@ def _film_between(
     line = between.straight[:, 1] * around[1] + between.straight[:, 2] * around[2]
     bent = u - line
     share = between.straight + part * (share - between.straight)
-    moving = np.where((part > 0) & (part < 1), bent / span, 0.0)  # part depends on the thinner film
+    moving = np.where((part > 0) & (part < 1), bent / span, 0.0)  # part's own derivative
     first = around[1] < around[2]
     share[:, 1] += np.where(first, moving, 0.0)
     share[:, 2] += np.where(first, 0.0, moving)

@@ -1,4 +1,4 @@
-"""Fluid friction in a solved film."""
+"""Fluid friction in the solved film of a line contact."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tribolab.lubrication.speeds import System
 
 
 class FluidFriction(NamedTuple):
-    """Couette and pressure parts of the fluid friction coefficient, Eq. (4)."""
+    """Shear and pressure parts of the fluid friction coefficient, Eq. (4)."""
 
     couette: float
     pressure: float
 
 
 def friction_parts(system: System, rough: FluidFriction, plain: FluidFriction) -> dict[str, float]:
-    """Return the fluid friction for a curve, with or without friction factors.
+    """Return the fluid friction of a Stribeck curve, with or without friction factors.
 
     Notes
     -----
@@ -52,13 +52,13 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
     moving = problem.moving(solution.couette)
     factors = moving.at(np.concatenate([u, *flow.film]) * problem.gap)
     shear = mesh.weight / u
-    # the flux in a cavity is that of the full film
+    # the flux through the cavity equals that of the full film
     cavity, flux = slice(fields.front, fields.rear), fields.flux[fields.front] / solution.couette
     carried = u[cavity] + problem.factors.rms_roughness / problem.gap * factors.phi_s[cavity]
     shear[cavity] *= np.where(carried > flux, flux / np.maximum(carried, flux), 1.0)
-    # drag of the pressure from the end of the domain, where it is 0, to the rupture of the film
+    # drag by the pressure, from the inlet end, where it is 0, to the rupture of the film
     rise = mesh.between.weight * flow.resistance * (flow.entrained - fields.flux[0])
-    if fields.front < fields.rear < u.size:  # the liquid forms again between two centres
+    if fields.front < fields.rear < u.size:  # the full film re-forms between two centres
         whole = rise[:, fields.rear].sum()
         rise[:, fields.rear] *= (fields.fluid[fields.rear] - problem.cavity) / whole
         rise[:, fields.front + 1 : fields.rear] = 0.0
@@ -66,7 +66,7 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
         rise[:, fields.front + 1 : fields.rear + 1] = 0.0
     drag = (flow.film / 2 * rise).ravel()
     beyond = outside_drag(problem, solution)
-    # stress g p/b; eta v/u = (couette/6) (g p/b) (g/u)
+    # unit of stress g p/b: eta v/u = (couette/6) (g p/b) (g/u)
     unit = problem.gap / (problem.half_width * problem.load)
 
     def parts(sheared: float, dragged: float) -> FluidFriction:

@@ -1,4 +1,4 @@
-"""Limits for the validity of lubricated contacts."""
+"""Validity limits of lubricated contacts."""
 
 from tribolab.core.limit import Limit
 

@@ -1,4 +1,4 @@
-"""Cells across the contact, refined at steep film and pressure, with elasticity."""
+"""Cells across the contact, refined where film and pressure are steep, with their elasticity."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from scipy.linalg import inv
 from tribolab.contact.layer import Layer, line_layer_kernel
 from tribolab.lubrication.parabolas import Between, between_middles, curved_kernel, curved_weights
 
-# Cells at each end of the contact: the film forms at the inlet, and is thinnest in the narrow
+# Positions of dense cells: the film forms at the inlet, and is thinnest in the narrow
 # constriction at the outlet.
 _ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # position, weight, and width relative to the edge
 
 
 class Mesh(NamedTuple):
-    """Cells in units of the contact half-width b; sliding to +x, inlet at x < 0."""
+    """Cells in units of the contact half-width b; the flat slides to +x, the inlet is at x < 0."""
 
     x: np.ndarray  # centres (n)
-    width: np.ndarray  # (n)
-    weight: np.ndarray  # weights of values at the centres in an integral over all cells (n)
+    width: np.ndarray  # weights for integrals over all cells (n)
+    weight: np.ndarray  # points between centres, at which the flow is computed
     between: Between  # points for the flow from centre to centre
-    kernel: np.ndarray  # displacement by unit pressure at a centre, for E* = 1 (n, n)
-    elastic: np.ndarray  # its inverse K next to -K 1 (n, n + 1)
-    push: np.ndarray  # load of each of its columns, weight @ elastic (n + 1)
+    kernel: np.ndarray  # displacement by unit pressure in a cell, for E* = 1 (n, n)
+    elastic: np.ndarray  # K, the inverse of the kernel, with the column -K 1 appended (n, n + 1)
+    push: np.ndarray  # load by a unit of each column, weight @ elastic (n + 1)
 
 
 @functools.lru_cache(maxsize=16)
@@ -38,7 +38,7 @@ def graded_mesh(
     size: float = 1.0,
     layer: Layer | None = None,
 ) -> Mesh:
-    """Return a graded mesh with the highest density of cells at x = -size and x = size.
+    """Return a mesh whose cells are densest at x = -size and x = size.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def graded_mesh(
     The inverse is cached for the last few meshes: it depends only on the cells, because lengths are
     in units of b and the length scale of the kernel is included in the constant of Eq. (9).
     """
-    # dense samples of the peaked density: equal steps of asinh((x -+ 1)/edge)
+    # samples of the density of cells: equal steps of asinh((x -+ 1)/edge)
     inlet, outlet = inlet / size, outlet / size
     reach = np.arcsinh((max(inlet, outlet) + 1) / edge)
     near = edge * np.sinh(np.linspace(-reach, reach, 4001))

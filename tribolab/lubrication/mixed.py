@@ -1,4 +1,4 @@
-"""Mixed lubrication of a line contact at one speed: film, contact and fluid pressure."""
+"""Mixed lubrication of a line contact at one speed: film thickness, contact and fluid pressure."""
 
 from __future__ import annotations
 
@@ -14,35 +14,35 @@ from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
 _STEPS = 30
 _MAX_CHANGE = 0.6  # largest relative change of the film in one step
-_CONVERGED = 1e-9  # of the maximum pressure, and of the load
-_REUSE = 1e-5  # residual below which the matrix of the last step is reused
+_CONVERGED = 1e-9  # largest error relative to the maximum pressure, and to the load
+_REUSE = 1e-5  # residual below which the last step's matrix is used again
 _ROUNDING = 1e-8  # residual accepted if a further step no longer improves it
 
 
 class Repulsion(Protocol):
-    """Contact pressure as a function of separation: a rough contact or a substitute."""
+    """Type of a contact pressure over separation: that of a rough contact, or a substitute."""
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return pressure [Pa] and its slope [Pa/m] at separations [m]."""
+        """Return the contact pressure [Pa] and its slope [Pa/m] at separations [m]."""
 
 
 class Problem(NamedTuple):
-    """Quantities independent of speed; lengths along x in b, gaps in g, pressures in p."""
+    """Scales and properties independent of speed; units: b along x, g for gaps, p for pressures."""
 
     mesh: Mesh
     factors: FlowFactors
-    separation: Repulsion | None  # None for smooth surfaces: they never touch
+    separation: Repulsion | None  # None for smooth surfaces, which never touch
     load: float  # F_N/L in units of p b
     half_width: float  # b [m]
     gap: float  # g = b^2/(2R) [m]
     pressure: float  # p = E* g/b [Pa]
-    inlet_length: float = np.inf  # distance at which the liquid begins, before the middle
-    cavity: float = 0.0  # lowest pressure of the liquid; negative if the outlet is flooded
+    inlet_length: float = np.inf  # distance from the start of the liquid to the middle
+    cavity: float = 0.0  # pressure of the cavity; negative if the outlet is flooded
     thinning: ShearThinning | None = None
-    viscosity: float = 1.0  # at rest [Pa s], of a shear-thinning liquid
+    viscosity: float = 1.0  # of a shear-thinning liquid at rest [Pa s]
 
     def moving(self, couette: float) -> FlowFactors | ThinnedFactors:
-        """Return the factors at a speed, including those of a shear-thinning liquid."""
+        """Return the flow factors at a speed; they include shear thinning."""
         if self.thinning is None:
             return self.factors
         speed = couette * self.gap**2 * self.pressure / (6 * self.viscosity * self.half_width)
@@ -50,7 +50,7 @@ class Problem(NamedTuple):
 
 
 class State(NamedTuple):
-    """Film, constant of Eq. (9) and pressure p = K^-1 (u - c - x^2), in the problem's units.
+    """Film u, constant c of Eq. (9) and pressure p = K^-1 (u - c - x^2), in the problem's units.
 
     The pressure is updated with the changes of the film: computed from a film much thicker than the
     elastic displacement, it would be a difference of large numbers.
@@ -61,59 +61,59 @@ class State(NamedTuple):
     pressure: np.ndarray
 
     def moved(self, mesh: Mesh, film: np.ndarray, constant: float) -> State:
-        """Return the state changed by given amounts of film and constant."""
+        """Return the state after changes of the film and the constant."""
         bent = mesh.elastic @ np.append(film, constant)
         return State(self.film + film, self.constant + constant, self.pressure + bent)
 
 
 class Fields(NamedTuple):
-    """Fields derived from a state, in the problem's units."""
+    """Pressures, flux and cavity that follow from a state, in the problem's units."""
 
     contact: np.ndarray  # pressure carried by the solid (n)
-    fluid: np.ndarray  # (n)
-    flux: np.ndarray  # through the faces (n + 1)
+    fluid: np.ndarray  # pressure of the fluid (n)
+    flux: np.ndarray  # flux between the cells (n + 1)
     front: int  # first cell of the cavity
-    rear: int  # first cell after it
+    rear: int  # first cell behind the cavity
 
 
 class Solution(NamedTuple):
-    """Converged state with its residuals."""
+    """Converged solution at one speed, with its residuals."""
 
     couette: float
     state: State
     fields: Fields
     flow: Flow
-    residual: float  # of p = p_contact + p_fluid, in units of the maximum pressure
+    residual: float  # largest error of p = p_contact + p_fluid, in units of the maximum pressure
     load_balance: float
-    flux_variation: float  # in the full film, over the larger of flux and entrained flux
+    flux_variation: float  # in the full film, over the larger of flux and entrainment
     iterations: int
 
 
 class NotConvergedError(Exception):
-    """Raised if Newton's method does not converge; the sweep then takes a smaller step."""
+    """Raised if Newton's method does not converge; the speed sweep then takes a smaller step."""
 
 
 class _Film(NamedTuple):
-    """Equations at one state."""
+    """Terms and residuals of the equations for one state."""
 
     fields: Fields
     flow: Flow
-    total: np.ndarray  # from elasticity (n)
-    yielding: np.ndarray  # slope of the contact pressure over the film (n)
-    flux_slope: np.ndarray  # over the films of the four surrounding cells (4, n + 1)
-    scale: np.ndarray  # converts a cell's balance to pressure (n)
+    total: np.ndarray  # total pressure, from elasticity (n)
+    yielding: np.ndarray  # derivative of the contact pressure by the film (n)
+    flux_slope: np.ndarray  # derivatives by the films of the four surrounding cells (4, n + 1)
+    scale: np.ndarray  # converts a flux imbalance of a cell to a pressure (n)
     residual: np.ndarray  # (n)
     error: float
     lacking: float  # relative error of the load
 
 
 def couette_number(problem: Problem, viscosity: float, speed: float) -> float:
-    """Return the ratio of Couette to Poiseuille flux, 6 eta v b/(g^2 p): the effect of speed."""
+    """Return 6 eta v b/(g^2 p), the ratio of Couette to Poiseuille flux and dimensionless speed."""
     return 6 * viscosity * speed * problem.half_width / (problem.gap**2 * problem.pressure)
 
 
 def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
-    """Return the solution of Eqs. (3), (5), (9), (10) with cavitation at one speed, by Newton.
+    """Return the solution of Eqs. (3), (5), (9), (10) with cavitation at one speed.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
         if solver is None or error > min(_REUSE, before / 10):
             solver = _factored(problem, film)
         before = error
-        # LAPACK reads the transpose without a copy
+        # pass the transpose to LAPACK, which reads it without a copy
         change, _ = lapack.dgetrs(*solver, _deficit(problem, film), trans=1, overwrite_b=True)
         if not np.all(np.isfinite(change)):
             raise NotConvergedError("the linearised equations are singular")
@@ -179,12 +179,12 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     lowest = problem.cavity if couette > 0 else 0.0
     residual = scale * (flux[1:] - flux[:-1])
     residual[front:rear] = fluid[front:rear] - lowest
-    # the fluid pressure again, from the flux: exact to rounding also at small pressure
+    # fluid pressure recomputed from the flux: exact to rounding even at small pressures
     exact = np.full_like(u, lowest)
     exact[:front] = np.cumsum((entrained[:front] - through) / conductance[:front])
     passing = np.full_like(entrained, through)
     passing[front + 1 : rear + 1] = entrained[front + 1 : rear + 1]
-    if rear < u.size:  # liquid forms again: the flux before the cavity
+    if rear < u.size:  # behind the cavity the flux is the same as in front of it
         behind = (entrained[rear + 1 :] - through) / conductance[rear + 1 :]
         exact[rear:] = -np.cumsum(behind[::-1])[::-1]
         if front < rear:
@@ -204,7 +204,7 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
 
 
 def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
-    """Return the LU factors of the transposed Jacobian, and their pivots."""
+    """Return the LU factors of the transposed Jacobian, and the pivots."""
     factor, pivots, singular = lapack.dgetrf(_jacobian(problem, film).T, overwrite_a=True)
     if singular:
         raise NotConvergedError("the linearised equations are singular")
@@ -212,13 +212,13 @@ def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _deficit(problem: Problem, film: _Film) -> np.ndarray:
-    """Return the negative residual, and the negative deficit of the load."""
+    """Return the negative residuals, the last one that of the load."""
     lack = problem.mesh.weight @ film.total - problem.load
     return -np.append(film.residual, film.total.max() / problem.load * lack)
 
 
 def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
-    """Return the derivatives of residual and load with respect to film and constant."""
+    """Return the derivatives of residuals and load by the film in each cell and the constant."""
     mesh, n = problem.mesh, film.residual.size
     front, rear = film.fields.front, film.fields.rear
     full = film.scale.copy()
@@ -227,7 +227,7 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
     elastic = mesh.elastic
     matrix = np.empty((n + 1, n + 1))
     matrix[:n] = elastic
-    for start, stop in ((0, front), (rear, n)):  # cells of the full film except the ends
+    for start, stop in ((0, front), (rear, n)):  # full film, except its end cells
         first, last = max(start, 1), min(stop, n - 1)
         if first < stop:
             matrix[first:stop] += before[first:stop, None] * elastic[first - 1 : stop - 1]
@@ -240,7 +240,7 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
     bands[-1][1:] -= before[1:] * film.yielding[:-1]
     bands[1][:-1] -= after[:-1] * film.yielding[1:]
     flat = matrix.ravel()
-    for k, band in bands.items():  # row i, column i + k
+    for k, band in bands.items():  # diagonal k: row i, column i + k
         first, last = max(-k, 0), n - max(k, 0)
         flat[first * (n + 1) + first + k :: n + 2][: last - first] += band[first:last]
     if front < rear < n:
@@ -252,7 +252,7 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
 
 
 def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
-    """Return the derivative of the flux through a face by films and constant (n + 1)."""
+    """Return the derivatives of the flux through a face by the films and the constant (n + 1)."""
     mesh, n = problem.mesh, film.residual.size
     row = np.zeros(n + 1)
     for cell, sign in ((face, -1), (face - 1, 1)):
@@ -266,7 +266,7 @@ def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
 def _rupture(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """Return first cell of the cavity, first cell after it, and flux up to it, for a given film.
+    """Return the first cell of the cavity, the first cell behind it, and the flux, for one film.
 
     With full cells 0 ... k - 1 and p = 0 at both ends, the flux J_k is the mean entrained flux,
     weighted with the resistance of the faces 0 ... k. The film ruptures at the first k beyond which
@@ -282,7 +282,7 @@ def _rupture(
 def _cavity(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """Return the cavity if the liquid sustains tension, with the region after the cavity.
+    """Return the same as `_rupture` for a liquid that sustains tension and may re-form a full film.
 
     Without a cavity the flux is the mean over all faces. If the pressure would fall below the
     lowest, the film ruptures as in `_rupture`, but at that pressure. It forms again in the first
@@ -305,7 +305,7 @@ def _cavity(
 
 
 def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the contact pressure and its derivative with respect to the film."""
+    """Return the contact pressure and its derivative by the film."""
     if problem.separation is None:
         return np.zeros_like(film), np.zeros_like(film)
     pressure, slope = problem.separation.pressure_and_slope(film * problem.gap)
@@ -313,14 +313,14 @@ def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _proof(problem: Problem, couette: float, state: State, film: _Film, step: int) -> Solution:
-    """Return the solution after checks; tension in the fluid or a reforming film is rejected."""
+    """Return the checked solution; tension in the fluid or a film that re-forms is rejected."""
     fields = film.fields
     carried = fields.contact + fields.fluid
     highest = carried.max()
     if np.any(fields.fluid < problem.cavity - _ROUNDING * highest):
         raise NotConvergedError("the film ruptures in more than one place")
     drive = fields.flux[1:] - fields.flux[:-1]
-    last = fields.rear - (fields.rear < drive.size)  # the flux falls where liquid forms again
+    last = fields.rear - (fields.rear < drive.size)  # the flux falls where the full film re-forms
     if couette > 0 and np.any(drive[fields.front : last] < -_ROUNDING * fields.flux.max()):
         raise NotConvergedError("the film forms again behind the cavity")
     return Solution(
@@ -336,7 +336,7 @@ def _proof(problem: Problem, couette: float, state: State, film: _Film, step: in
 
 
 def _flux_variation(fields: Fields, flow: Flow) -> float:
-    """Return the variation of the flux over the full film, recomputed from film and pressure."""
+    """Return the relative variation of the flux over the full film, from film and pressure."""
     if fields.front < 2:
         return 0.0
     flux = (flow.drive[1:-1] - flow.conductance[1:-1] * np.diff(fields.fluid))[: fields.front]

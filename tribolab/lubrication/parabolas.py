@@ -1,4 +1,4 @@
-"""Fourth-order integration on cells of unequal width, by parabolas and cubics."""
+"""Fourth-order integration over cells of unequal width, by parabolas and cubics."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ import numpy as np
 
 from tribolab.contact.line import line_kernel
 
-_SERIES_DISTANCE = 6.0  # distance in cell widths beyond which moments are computed by a series
-_GAUSS = 0.5 / np.sqrt(3)  # of the interval, from its centre
-_FINE = 129  # points for the minimum film: resolves 1e-4 of a cell's change
+_SERIES_DISTANCE = 6.0  # cell widths beyond which moments are computed from a series
+_GAUSS = 0.5 / np.sqrt(3)  # distance of Gauss points from an interval's centre, over its length
+_FINE = 129  # points for the search of the minimum film
 
 
 class Between(NamedTuple):
-    """Two Gauss points between neighbouring centres; half cells at both ends.
+    """Two Gauss points between neighbouring cell centres, and in the half cells at both ends.
 
     The film at the points is a cubic through the four surrounding centres, a parabola through three
     next to the outermost cells, and constant in the outer halves of the outermost cells.
     """
 
-    weight: np.ndarray  # half the length, the same for both points (n + 1)
-    share: np.ndarray  # weights of the four surrounding cells (2, 4, n + 1)
-    straight: np.ndarray  # the same for linear interpolation (2, 4, n + 1)
-    cell: np.ndarray  # indices of these cells (4, n + 1)
+    weight: np.ndarray  # half the distance between the centres, the weight of both points (n + 1)
+    share: np.ndarray  # weights of the four surrounding cells for a cubic (2, 4, n + 1)
+    straight: np.ndarray  # weights of the four surrounding cells for a straight line (2, 4, n + 1)
+    cell: np.ndarray  # indices of the four surrounding cells (4, n + 1)
 
 
 def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
-    """Return the points of `Between` for cells with given centres and widths (n)."""
+    """Return the Gauss points between the centres of cells with given widths (n)."""
     n = x.size
     # four cells around each face; missing cells at the ends have weight 0
     cell = np.arange(-2, 2)[:, None] + np.arange(n + 1)
@@ -48,13 +48,13 @@ def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
     straight = np.zeros_like(share)
     straight[:, 1] = 0.5 + np.array([[_GAUSS], [-_GAUSS]])
     straight[:, 2] = 1 - straight[:, 1]
-    for face, mine in ((0, 2), (n, 1)):  # constant in the outer halves of the outermost cells
+    for face, mine in ((0, 2), (n, 1)):  # the outermost half cells have constant values
         share[:, :, face] = straight[:, :, face] = np.arange(4) == mine
     return Between(length / 2, share, straight, cell)
 
 
 def curved_weights(x: np.ndarray, width: np.ndarray) -> np.ndarray:
-    """Return weights (n) that integrate values at the centres over all cells.
+    """Return weights (n) of the values at cell centres, for integrals over all cells.
 
     A cell has the parabola through its centre and the neighbouring ones; the outermost are
     constant.
@@ -81,7 +81,7 @@ def curved_kernel(x: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def _parabolas(x: np.ndarray) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """Return weights of slope and curvature at inner centres (n - 2) for three cells."""
+    """Return the weights of three cells in the slope and curvature at inner centres (n - 2)."""
     before, after = x[1:-1] - x[:-2], x[2:] - x[1:-1]
     both = before + after
     return [
@@ -120,7 +120,7 @@ def _antiderivatives(t: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarra
 
 
 def lowest(x: np.ndarray, values: np.ndarray) -> float:
-    """Return the minimum between the centres, by the quartic through the five lowest points."""
+    """Return the minimum of a function between cell centres, by a quartic through five values."""
     middle = min(max(int(np.argmin(values)), 2), x.size - 3)
     around = slice(middle - 2, middle + 3)
     fine = np.linspace(x[middle - 1], x[middle + 1], _FINE)
@@ -128,14 +128,14 @@ def lowest(x: np.ndarray, values: np.ndarray) -> float:
 
 
 def value_at(x: np.ndarray, values: np.ndarray, at: float) -> float:
-    """Return the value at any place in the cells, by the cubic through four centres."""
+    """Return the value of a function anywhere in the cells, by the cubic through four centres."""
     after = min(max(int(np.searchsorted(x, at)), 2), x.size - 2)
     around = slice(after - 2, after + 2)
     return float(_polynomial(x[around], values[around], np.array([at]))[0])
 
 
 def _polynomial(nodes: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return the polynomial through all nodes, by Newton's divided differences."""
+    """Return the values of the polynomial through all nodes, by Newton's divided differences."""
     parts = values.astype(float)
     for order in range(1, nodes.size):
         parts[order:] = (parts[order:] - parts[order - 1 : -1]) / (nodes[order:] - nodes[:-order])

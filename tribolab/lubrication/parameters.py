@@ -23,7 +23,7 @@ R = TypeVar("R")
 Outlet = Literal["vented", "flooded"]
 Abscissa = Literal["entrainment_speed", "sliding_speed"]
 Method = Literal["auto", "full", "strips"]
-VAPOUR = -1e5  # Pa: a liquid without gas boils at some 1 bar below ambient pressure
+VAPOUR = -1e5  # Pa: a degassed liquid boils at some 1 bar below ambient pressure
 
 
 def _require_known(name: str, value: str, kind: Any) -> None:
@@ -34,7 +34,7 @@ def _require_known(name: str, value: str, kind: Any) -> None:
 
 @dataclass(frozen=True)
 class Liquid:
-    """Liquid between the bodies.
+    """Liquid between the bodies: viscosity, extent and pressure of its cavity.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Liquid:
 
 @dataclass(frozen=True)
 class Interface:
-    """Interface of the bodies: friction of the real contact, roughness and motion.
+    """Interface of the bodies: shear stress of the real contact, rough body, adhesion and motion.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ class Interface:
 
     @property
     def entrained(self) -> float:
-        """Twice the entrainment speed over the given speed [1]."""
+        """Twice the entrainment speed, relative to the given speed [1]."""
         if self.slide_roll is None:
             return 1.0
         return 2.0 if self.abscissa == "entrainment_speed" else 2 / abs(self.slide_roll)
@@ -155,7 +155,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Solver:
-    """Numerical parameters of the solution.
+    """Numerical parameters: resolution, theories and methods.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ class Solver:
 
 
 class Parameters(NamedTuple):
-    """Parameters of a model except contact, roughness, load and speed."""
+    """Parameters of a lubricated contact, except geometry, roughness, load and speed."""
 
     liquid: Liquid
     interface: Interface = Interface()
@@ -218,7 +218,7 @@ def parameters_of(
     solver: Solver | None = None,
     **options: Any,
 ) -> Parameters:
-    """Return the parameters of a model combined in one object.
+    """Return liquid, interface and solver as one object, from objects or single values.
 
     Parameters
     ----------
@@ -252,7 +252,7 @@ def parameters_of(
 
 
 def as_stated(value: Any) -> Any:
-    """Return an object or a stated value; an array without dims becomes a number."""
+    """Return a value as given by the user; an array without dims becomes a number."""
     return value if isinstance(value, Liquid | Interface) else stated_value(value)
 
 
@@ -270,7 +270,7 @@ def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def warn_of_old(function: str, options: Mapping[str, Any]) -> None:
-    """Warn of options that are now fields of an object."""
+    """Warn that arguments of the last release are now fields of an object."""
     if not options:
         return
     homes = sorted({_HOME[_RENAMED.get(n, n)] for n in options if _RENAMED.get(n, n) in _HOME})

@@ -1,4 +1,4 @@
-"""Flow and friction factors over separation in units of the rms roughness."""
+"""Flow and friction factors over mean separation in units of h_rms."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _OVER = "relative_separation"
 
 @over_dims(psd=("wavenumber",))
 def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> xr.Dataset:
-    """Return flow and friction factors over mean separation in units of the rms roughness.
+    """Return flow and friction factors over the mean separation in units of the rms roughness.
 
     Parameters
     ----------

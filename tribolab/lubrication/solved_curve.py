@@ -1,4 +1,4 @@
-"""Stribeck curve of one surface from its solved films."""
+"""Computed Stribeck curve of one surface, with the films from which it follows."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ from tribolab.units.stamping import stamp
 
 
 class SolvedCurve(NamedTuple):
-    """Stribeck curve with its solutions, from which similar contacts can start."""
+    """Stribeck curve with its solutions, from which similar contacts can be started."""
 
     curve: xr.Dataset
-    points: list[list[SolvedSpeed]]  # by load
+    points: list[list[SolvedSpeed]]  # one list per load
 
 
 def solve_curve(
@@ -46,7 +46,7 @@ def solve_curve(
     parameters: Parameters,
     near: SolvedCurve | None = None,
 ) -> SolvedCurve:
-    """Return the Stribeck curve of one surface, starting from a similar one if given.
+    """Return the Stribeck curve of one surface, started from a similar one if given.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def solve_curve(
     near_points: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces)
     if near is not None and not contact.is_round:
         near_points = near.points
-    # if both bodies move, entrainment equals that of one body at twice the entrainment speed
+    # two moving bodies entrain as one body at twice the entrainment speed
     times = parameters.interface.entrained
     magnitudes, back = np.unique(times * np.abs(speeds.values), return_inverse=True)
     used: list[np.ndarray] = []
@@ -131,7 +131,7 @@ def solve_curve(
 
 
 def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str, np.ndarray]:
-    # the areas of all points at once, with pressures in Pa
+    # contact areas of all points together, with pressures in Pa
     solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
     whole = solid + np.stack([p.solution.fields.fluid * p.problem.pressure for p in points])
     hertz = hertz_half_width(force, system.contact)
@@ -152,7 +152,7 @@ def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str,
 def _row(
     system: System, point: SolvedSpeed, force: float, hertz: float, area: np.ndarray
 ) -> dict[str, float]:
-    """Return values of a curve at one speed, for area ratios of both theories (2, cells)."""
+    """Return the values of a curve at one speed, from area ratios in two theories (2, cells)."""
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
     real_length, otherwise = area @ mesh.weight * problem.half_width

@@ -1,4 +1,4 @@
-"""Solution of a lubricated line contact at given speeds, each on its own mesh."""
+"""Solution of a lubricated line contact at given speeds, with a suitable mesh for each."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from tribolab.lubrication.sweep import (
     wet_state,
 )
 
-_THICK_FILM_RATIO = 10.0  # ratio of speeds above which a thick film is started directly
+_THICK_FILM_RATIO = 10.0  # ratio of speeds above which a thick film is solved without continuation
 
 
 class System(NamedTuple):
-    """System parameters except load and speed, in SI."""
+    """Parameters of a lubricated contact except load and speed, in SI."""
 
     contact: Contact
     psd: xr.Dataset | None
@@ -40,12 +40,12 @@ class System(NamedTuple):
     factors: FlowFactors
     liquid: Liquid
     solver: Solver
-    growth: AdhesiveGrowth | None = None  # growth of the area by adhesion
+    growth: AdhesiveGrowth | None = None  # increase of the contact area by adhesion
     rolls: bool = False  # whether both bodies move
 
     @property
     def line(self) -> LineContact:
-        """The contact as a line contact."""
+        """Contact, which must be a line contact."""
         assert isinstance(self.contact, LineContact)
         return self.contact
 
@@ -61,7 +61,7 @@ class System(NamedTuple):
         return thinned_film(self.line, self.liquid, force, speed * abs(self.factors.slide))
 
     def problem(self, force: float, speed: float) -> Problem:
-        """Return scales and mesh at one load [N/m] and speed [m/s], including rest."""
+        """Return scales and mesh for a load [N/m] and a speed [m/s], which may be 0."""
         return lubrication_problem(
             self.line,
             self.separation,
@@ -75,7 +75,7 @@ class System(NamedTuple):
 
 
 class SolvedSpeed(NamedTuple):
-    """Solution at a speed [m/s], with its problem and mesh."""
+    """Solution at one speed [m/s], with its problem and mesh."""
 
     speed: float
     problem: Problem
@@ -85,7 +85,7 @@ class SolvedSpeed(NamedTuple):
 def solve_speeds(
     system: System, force: float, speeds: np.ndarray, near: Sequence[SolvedSpeed] = ()
 ) -> list[SolvedSpeed]:
-    """Return the solutions at increasing speeds [m/s].
+    """Return the solutions of a line contact at increasing speeds [m/s].
 
     Speeds with similar films share a mesh, which depends only on the speed, as does the solution.
     The last state is interpolated from one mesh to the next.
@@ -125,20 +125,20 @@ def solve_speeds(
 def _continue(
     system: System, force: float, problem: Problem, speeds: list[float], last: SolvedSpeed
 ) -> list[Solution] | None:
-    """Return solutions continued from the last speed on another mesh; None if that fails."""
+    """Return solutions on another mesh, continued from the last speed; None if this fails."""
     around = problem, system.line, system.liquid, force
-    soon = system.psd is None or is_thick(*around, speeds[0])  # direct start possible
+    soon = system.psd is None or is_thick(*around, speeds[0])  # a direct start is possible
     if not last.speed or (soon and speeds[0] > _THICK_FILM_RATIO * last.speed):
         return None
     start = carried_state(problem, last.problem, last.solution.state)
     try:
         return sweep(problem, system.viscosity, [last.speed, *speeds], start)[1:]
-    except AnalysisError:  # then the solution starts from rest, and its error gives the reason
+    except AnalysisError:  # the caller then starts from rest, where an error states the cause
         return None
 
 
 def _restart(system: System, force: float, problem: Problem, speeds: np.ndarray) -> list[Solution]:
-    """Return solutions from the dry contact, from thick films, or between smooth surfaces.
+    """Return solutions started from the dry contact, from thick films, or from smooth surfaces.
 
     The solution is independent of the start. The dry contact is the most reliable start, but slow
     if its flow channels are closed, or if the first speed separates the surfaces.
@@ -185,5 +185,5 @@ def _restart(system: System, force: float, problem: Problem, speeds: np.ndarray)
 
 
 def _is_sealed(problem: Problem, rest: State) -> bool:
-    """Return whether the dry contact closes all flow channels somewhere."""
+    """Return whether all flow channels are closed somewhere in the dry contact."""
     return bool(rest.film.min() * problem.gap < problem.factors.percolation_separation)

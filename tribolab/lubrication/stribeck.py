@@ -34,7 +34,7 @@ def stribeck_curve(
     solver: Solver | None = None,
     **options: Any,
 ) -> xr.Dataset:
-    """Return the friction coefficient of a lubricated rough contact over sliding speed (and load).
+    """Return the friction coefficient of a lubricated rough contact over sliding speed and load.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def stribeck_curve(
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> xr.Dataset:
-    """Return a computed curve with another shear stress, without solving it again.
+    """Return a computed curve for another shear stress, without solving the contact again.
 
     Parameters
     ----------

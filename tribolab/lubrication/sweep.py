@@ -1,4 +1,4 @@
-"""Starting states of a line contact, and continuation to increasing speeds."""
+"""Start of the solution of a line contact, and continuation to higher speeds."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from tribolab.lubrication.mixed import (
 )
 from tribolab.lubrication.parameters import Liquid
 
-_SUBSTEPS = 100  # number of tolerated failures
+_SUBSTEPS = 100  # number of failed steps that are tolerated
 _FINEST = 1e-2  # smallest step in ln v
-_THICK = 5.0  # roughnesses
+_THICK = 5.0  # film thickness over h_rms that counts as thick
 _GROWTH = np.log(4.0)  # largest change of ln(film) in an extrapolation to the next speed
-_START_POINTS = 101  # points of the line contact from which the dry contact starts
-_DECADES = 12  # range of the search for a speed that starts from the dry contact
+_START_POINTS = 101  # points of the dry contact that is the start
+_DECADES = 12  # decades below a speed in which a speed that can be reached from rest is searched
 
 
 def dry_state(problem: Problem, contact: LineContact, separation: Separation, load: float) -> State:
-    """Return the solved contact at rest on the problem's own mesh.
+    """Return the solved contact at rest, on the mesh of the problem.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def is_thick(
 def lifted_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Return a state at one speed, from a film that is thick compared with the roughness.
+    """Return a state at one speed, started from a film much thicker than the roughness.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def lifted_state(
 def wet_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Return a state between smooth surfaces at one speed, from a Hertz contact on a soft layer.
+    """Return a state between smooth surfaces at one speed, with the help of an auxiliary repulsion.
 
     An auxiliary repulsion, which ends at a third of the expected film, acts as contact until the
     fluid carries the load: as with roughness, increasing speed separates the bodies. It may fail
@@ -121,7 +121,7 @@ def wet_state(
 def _solve_cushioned(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Return the state solved at rest with the auxiliary repulsion, then at the speed."""
+    """Return the state solved with the auxiliary repulsion, first at rest and then at the speed."""
     film = thinned_film(contact, liquid, load, speed)
     x = problem.mesh.x * problem.half_width
     pressure = hertz_pressure(x, load, contact) / problem.pressure
@@ -136,13 +136,13 @@ def _solve_cushioned(
 
 
 class _Cushion(NamedTuple):
-    """Auxiliary repulsion p = p_max exp(10 - 30 u/film) between smooth surfaces."""
+    """Auxiliary repulsion p = p_max exp(10 - 30 u/film), which separates smooth surfaces."""
 
     highest: float  # p_max [Pa]
     film: float  # [m]
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return pressure [Pa] and its slope [Pa/m] at separations [m]."""
+        """Return the repulsive pressure [Pa] and its slope [Pa/m] at separations [m]."""
         pressure = self.highest * np.exp(10 - 30 * separation / self.film)
         return pressure, -30 / self.film * pressure
 
@@ -197,7 +197,7 @@ def sweep(
 def sweep_from_similar(
     problem: Problem, viscosity: float, speeds: list[float], near: Sequence[State]
 ) -> list[Solution] | None:
-    """Return solutions at increasing speeds, each from a similar contact; None if that fails.
+    """Return solutions started from those of a similar contact; None if this fails.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def sweep_from_similar(
         start = _shift_state(problem.mesh, state, pairs[len(pairs) - len(weights) :], weights)
         try:
             solved.append(solve_speed(problem, couette_number(problem, viscosity, speed), start))
-        except NotConvergedError:  # then the contact is solved without a similar one
+        except NotConvergedError:  # the caller then solves the contact without the similar one
             return None
     return solved
 
@@ -227,9 +227,9 @@ def sweep_from_similar(
 def _march(
     problem: Problem, viscosity: float, speeds: list[float], start: State
 ) -> tuple[list[Solution], NotConvergedError | None]:
-    """Return solutions speed by speed, and the reason of an early end."""
+    """Return solutions at one speed after another, and the error if one cannot be solved."""
     solved: list[Solution] = []
-    known: list[tuple[float, State]] = []  # ln v and state of the last three, the newest last
+    known: list[tuple[float, State]] = []  # ln v and state of the last three solutions
     budget = _SUBSTEPS
     for speed in speeds:
         aims = [np.log(speed)]
@@ -269,7 +269,7 @@ def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: 
 def _shift_state(
     mesh: Mesh, state: State, pairs: Sequence[tuple[State, State]], weights: Sequence[float]
 ) -> State:
-    """Return a state shifted by the weighted differences of pairs of states."""
+    """Return a state shifted by weighted differences between pairs of other states."""
     if not pairs:
         return state
     weighted = list(zip(weights, pairs, strict=True))
@@ -280,7 +280,7 @@ def _shift_state(
 
 
 def _extrapolation(at: list[float], aim: float) -> list[float]:
-    """Return weights of the last points: parabola for similar steps, else secant or last value."""
+    """Return weights of the last solutions: parabola for similar steps, else secant or the last."""
     if len(at) < 2 or at[-1] == at[-2]:
         return [1.0]
     step, ahead = at[-1] - at[-2], aim - at[-1]

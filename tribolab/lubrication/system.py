@@ -1,4 +1,4 @@
-"""Checked inputs of Stribeck curves and film profiles, and their attributes."""
+"""Checked inputs of Stribeck curves and film profiles, and the attributes of results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tribolab.lubrication.parameters import Parameters
 from tribolab.lubrication.speeds import System
 from tribolab.units.stamping import labelled
 
-PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
+PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # convergence of each point
 _REFERENCE = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
     "Stribeck curve in hydrophobic soft contacts (2026), Eqs. (3)-(10)"
@@ -28,7 +28,7 @@ _REFERENCE = (
 
 
 def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) -> System:
-    """Return the parameters common to all speeds and loads."""
+    """Return the parameters that are common to all speeds and loads."""
     liquid, interface, solver = parameters
     factors, body = interface.factors, interface.rough_body
     if factors is None:
@@ -51,7 +51,7 @@ def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) 
 
 
 def checked_loads(load: str | ArrayLike, contact: Contact) -> xr.DataArray:
-    """Return loads [N/m], or [N] for a ball (load); AnalysisError unless positive."""
+    """Return loads [N/m] ([N] for a ball) over ``load``; an AnalysisError unless positive."""
     if contact.is_round:
         loads = labelled(load, "normal_force").rename("load")
         if "normal_force" in loads.dims:
@@ -66,7 +66,7 @@ def checked_loads(load: str | ArrayLike, contact: Contact) -> xr.DataArray:
 
 
 def checked_speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArray:
-    """Return sliding speeds [m/s] (sliding_speed); AnalysisError if one leaves no film."""
+    """Return sliding speeds [m/s]; an AnalysisError for smooth surfaces at rest."""
     speeds = labelled(speed, "sliding_speed")
     if speeds.ndim == 0:
         speeds = speeds.expand_dims("sliding_speed")
@@ -78,7 +78,7 @@ def checked_speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArr
 
 
 def system_attributes(system: System) -> dict[str, str | float | int]:
-    """Return the attributes of a result with its parameters and grid."""
+    """Return the attributes of a result: parameters of contact, liquid and solution."""
     return {
         "viscosity_Pa_s": system.viscosity,
         "youngs_modulus_Pa": system.contact.youngs_modulus,
@@ -97,7 +97,7 @@ def system_attributes(system: System) -> dict[str, str | float | int]:
 
 
 def _special_attributes(system: System) -> dict[str, str | float | int]:
-    """Return attributes for layers, elastic counter bodies and sealed outlets."""
+    """Return attributes for non-default settings: layers, elastic counter bodies, outlets, etc."""
     contact, liquid, factors = system.contact, system.liquid, system.factors
     balance = factors.roughness_balance
     settings = {
@@ -115,11 +115,11 @@ def _special_attributes(system: System) -> dict[str, str | float | int]:
 def with_adhesion(
     system: System, highest_load: float, work_of_adhesion: str | float | None
 ) -> System:
-    """Return the system with the growth of contact area by adhesion up to a load [N/m]."""
+    """Return the system with the increase of contact area by adhesion, up to a load [N/m]."""
     if work_of_adhesion is None or system.psd is None:
         return system
     modulus = _stiffness(system)
-    # the peak pressure of a film slightly exceeds that of Hertz
+    # the peak pressure with a film slightly exceeds the Hertz pressure
     highest = 1.5 * float(hertz_max_pressure(highest_load, system.contact))
     return system._replace(growth=adhesive_growth(system.psd, modulus, work_of_adhesion, highest))
 
@@ -127,7 +127,7 @@ def with_adhesion(
 def real_area(
     system: System, solid: np.ndarray, whole: np.ndarray, theory: AreaTheory
 ) -> np.ndarray:
-    """Return the relative contact area at the solid and the total pressure [Pa]."""
+    """Return the relative contact area at given contact and total pressures [Pa]."""
     if system.psd is None:
         return np.zeros_like(solid)
     area = contact_area_ratio(solid, system.psd, _stiffness(system), theory)
@@ -135,5 +135,5 @@ def real_area(
 
 
 def _stiffness(system: System) -> float:
-    """Return E* for the roughness [Pa], which differs from that of a ball's strip."""
+    """Return E* of the rough contact [Pa], which differs from that of a strip of a ball."""
     return system.separation.effective_modulus if system.separation else np.nan

@@ -1,4 +1,4 @@
-"""Shear-thinning liquids."""
+"""Shear-thinning liquids: viscosity laws, rheometer tables and viscous heating."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.factors import Factors, FlowFactors
 from tribolab.units.conversion import positive, to_si
 
-_STEP = 1e-4  # of ln(rate), for slopes
+_STEP = 1e-4  # step in ln(rate) for derivatives
 
 
 @dataclass(frozen=True)
 class ShearThinning:
-    """Viscosity over the shear rate, relative to that at rest.
+    """Viscosity over shear rate, relative to the viscosity at rest.
 
     Made by `carreau_yasuda`, `cross`, `power_law` or `rheometer_table`.
 
@@ -41,17 +41,17 @@ class ShearThinning:
     curve: Callable[[np.ndarray], np.ndarray] = field(repr=False)
 
     def __call__(self, rate: np.ndarray) -> np.ndarray:
-        """Return the viscosity relative to that at rest."""
+        """Return the viscosity at shear rates [1/s], relative to that at rest."""
         return np.asarray(self.curve(np.maximum(np.abs(rate), 1e-30)))
 
     def tangent(self, rate: np.ndarray) -> np.ndarray:
-        """Return d tau/d rate relative to the viscosity at rest."""
+        """Return d tau/d rate at shear rates [1/s], relative to the viscosity at rest."""
         up, down = (self(rate * np.exp(s)) for s in (_STEP, -_STEP))
         exponent = np.log(up / down) / (2 * _STEP)
         return np.asarray(self(rate) * np.maximum(1 + exponent, 1e-3))
 
     def pressure_flow(self, rate: np.ndarray) -> np.ndarray:
-        """Return the viscosity of pressure flow superposed on shear, relative to that at rest.
+        """Return the viscosity for pressure flow superposed on shear, relative to that at rest.
 
         Notes
         -----
@@ -65,7 +65,7 @@ class ShearThinning:
 def carreau_yasuda(
     time: str | float, exponent: float, transition: float = 2.0, rest: float = 0.0
 ) -> ShearThinning:
-    """Return the law of Carreau and Yasuda, ``r + (1 - r) (1 + (time rate)^a)^((n - 1)/a)``.
+    """Return the Carreau-Yasuda law, ``r + (1 - r) (1 + (time rate)^a)^((n - 1)/a)``.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def carreau_yasuda(
 
 
 def cross(time: str | float, exponent: float, rest: float = 0.0) -> ShearThinning:
-    """Return Cross's law, ``r + (1 - r)/(1 + (time rate)^(1 - n))``."""
+    """Return the Cross law, ``r + (1 - r)/(1 + (time rate)^(1 - n))``."""
     of = _checked(time, exponent, rest)
     return ShearThinning(
         f"Cross, time {of:g} s, n = {exponent:g}, rest {rest:g}",
@@ -97,7 +97,7 @@ def cross(time: str | float, exponent: float, rest: float = 0.0) -> ShearThinnin
 
 
 def power_law(rate: str | float, exponent: float) -> ShearThinning:
-    """Return the power law ``(rate/rate_0)^(n - 1)``, Newtonian below the given rate [1/s]."""
+    """Return the power law ``(rate/rate_0)^(n - 1)``, Newtonian below rate_0 [1/s]."""
     start = positive(rate, "1/s", "rate")
     _checked(1.0, exponent, 0.0)
     return ShearThinning(
@@ -107,7 +107,7 @@ def power_law(rate: str | float, exponent: float) -> ShearThinning:
 
 
 def rheometer_table(rate: ArrayLike, viscosity: ArrayLike) -> tuple[float, ShearThinning]:
-    """Return the viscosity at rest [Pa s] and the law of a rheometer's table.
+    """Return the viscosity at rest [Pa s] and the viscosity law of a rheometer's table.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def rheometer_table(rate: ArrayLike, viscosity: ArrayLike) -> tuple[float, Shear
 def viscous_heating(
     friction: float, load: float, speed: float, half_width: float, conductivity: float = 0.3
 ) -> float:
-    """Return the temperature rise [K] of a liquid film by its friction, as an order of magnitude.
+    """Return the order of magnitude of the temperature rise [K] in a sheared liquid film.
 
     Parameters
     ----------
@@ -150,13 +150,13 @@ def viscous_heating(
     divided between both bodies.
     """
     flux = friction * load * speed / (2 * half_width)
-    diffusivity = conductivity / 2e6  # volumetric heat capacity of polymers and liquids, J/(m3 K)
+    diffusivity = conductivity / 2e6  # heat capacity of polymers and liquids, J/(m3 K)
     depth = min(half_width, float(np.sqrt(diffusivity * half_width / max(speed, 1e-30))))
     return float(flux * depth / conductivity / 2)
 
 
 class ThinnedFactors(NamedTuple):
-    """Factors of a surface whose liquid thins, at one sliding speed: `FlowFactors` to a solver."""
+    """Flow and friction factors with a shear-thinning liquid, at one sliding speed."""
 
     factors: FlowFactors
     law: ShearThinning
@@ -164,11 +164,11 @@ class ThinnedFactors(NamedTuple):
 
     @property
     def rms_roughness(self) -> float:
-        """h_rms [m]."""
+        """Root-mean-square roughness h_rms [m]."""
         return self.factors.rms_roughness
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return `FlowFactors.transport` with phi_p over the viscosity of the pressure flow."""
+        """Return `FlowFactors.transport`, with phi_p divided by the viscosity for pressure flow."""
         phi, slope, entrained, entrained_slope = self.factors.transport(u)
         rate = self.sliding / u
         thin = self.law.pressure_flow(rate)
@@ -177,12 +177,12 @@ class ThinnedFactors(NamedTuple):
         return phi / thin, (slope - phi * by_film) / thin, entrained, entrained_slope
 
     def at(self, separation: np.ndarray) -> Factors:
-        """Return `FlowFactors.at` with the factors of shear times the viscosity of shear."""
+        """Return `FlowFactors.at` with phi_f and phi_fs multiplied by the relative viscosity."""
         factors, thin = self.factors.at(separation), self.relative_viscosity(separation)
         return factors._replace(phi_f=factors.phi_f * thin, phi_fs=factors.phi_fs * thin)
 
     def relative_viscosity(self, separation: np.ndarray) -> np.ndarray:
-        """Return the shear viscosity at mean separations [m], relative to that at rest."""
+        """Return the viscosity under shear at mean separations [m], relative to that at rest."""
         return self.law(self.sliding / separation)
 
 

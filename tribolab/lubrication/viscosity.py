@@ -12,12 +12,12 @@ from tribolab.units.conversion import to_si
 LIQUIDS = ("glycerol", "water", "silicone oil 100 cSt")
 _SYNONYMS = {"glycerine": "glycerol", "glycerin": "glycerol", "silicon oil": "silicone oil"}
 _OIL = re.compile(r"silicone oil[ _]*(\d+(?:\.\d+)?) *(?:cst|mm2/s|mm²/s)?$")
-_ZERO = 273.15  # K
-_HIGHEST = {"water": 100.0, "glycerol": 100.0, "silicone oil": 150.0}  # degrees Celsius
-# Relative uncertainty of the formulas and of the grades of oils
+_ZERO = 273.15  # 0 degrees Celsius in K
+_HIGHEST = {"water": 100.0, "glycerol": 100.0, "silicone oil": 150.0}  # limits, degrees Celsius
+# Relative standard uncertainty of the formulas, which includes the grades of oils
 _FORMULA = {"water": 0.01, "glycerol": 0.02, "silicone oil": 0.03}
-# Polydimethylsiloxane by nominal viscosity at 25 degrees Celsius [mm2/s]: density there relative to
-# water, and relative decrease of the viscosity from 37.8 to 98.9 degrees Celsius [2]_
+# Silicone oils: viscosity at 25 degrees Celsius [mm2/s]; density there relative to
+# water; relative decrease of the viscosity from 37.8 to 98.9 degrees Celsius [2]_
 _OILS = (
     (1.0, 0.818, 0.37),
     (2.0, 0.873, 0.48),
@@ -30,11 +30,11 @@ _OILS = (
     (10000.0, 0.975, 0.60),
     (100000.0, 0.977, 0.61),
 )
-_EXPANSION = 9.5e-4  # 1/K, volumetric expansion of these oils
+_EXPANSION = 9.5e-4  # 1/K, volumetric thermal expansion of silicone oils
 
 
 class Viscosity(NamedTuple):
-    """Viscosity of a liquid, with its sensitivities.
+    """Viscosity of a liquid, with its sensitivity to temperature and composition.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Viscosity(NamedTuple):
     formula: float
 
     def uncertainty(self, temperature: float = 0.0, water_content: float = 0.0) -> float:
-        """Return the relative standard uncertainty [1].
+        """Relative standard uncertainty of the viscosity [1].
 
         Parameters
         ----------
@@ -76,7 +76,7 @@ class Viscosity(NamedTuple):
 def liquid_viscosity(
     liquid: str, temperature: str | float, water_content: str | float = 0.0
 ) -> Viscosity:
-    """Return the viscosity of glycerol with water, of water, or of a silicone oil.
+    """Return the viscosity of water, aqueous glycerol, or a silicone oil.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def liquid_viscosity(
 
 
 def knows_liquid(name: str) -> bool:
-    """Return whether the viscosity of a medium is known by its name.
+    """Return whether the viscosity of a medium is known from its name.
 
     Examples
     --------
@@ -177,7 +177,7 @@ def _require_name(liquid: str) -> str:
 
 
 def _glycerol(celsius: float, water: float) -> float:
-    """Return the viscosity [Pa s] of glycerol with a mass fraction of water, Cheng's Eq. (6)."""
+    """Return the viscosity [Pa s] of glycerol with a mass fraction of water, by Cheng's Eq. (6)."""
     t, glycerol = celsius, 1.0 - water
     of_water = 1.790e-3 * math.exp((-1230 - t) * t / (36100 + 360 * t))
     pure = 12.100 * math.exp((-1233 + t) * t / (9900 + 70 * t))
@@ -188,8 +188,8 @@ def _glycerol(celsius: float, water: float) -> float:
 
 
 def _silicone_oil(nominal: float, kelvin: float) -> Viscosity:
-    """Return the viscosity of a silicone oil of a given grade [mm2/s at 25 degrees Celsius]."""
-    from scipy.optimize import brentq  # imported only if an oil is named
+    """Return the viscosity of a silicone oil with a given grade [mm2/s at 25 degrees Celsius]."""
+    from scipy.optimize import brentq  # needed for oils only
 
     density, falls = _grade_data(nominal)
 
@@ -212,7 +212,7 @@ def _silicone_oil(nominal: float, kelvin: float) -> Viscosity:
 
 
 def _grade_data(nominal: float) -> tuple[float, float]:
-    """Return density relative to water and temperature dependence of viscosity for a grade."""
+    """Return the relative density and temperature dependence of viscosity for a silicone oil."""
     for low, high in zip(_OILS, _OILS[1:], strict=False):
         if low[0] <= nominal <= high[0]:
             part = math.log(nominal / low[0]) / math.log(high[0] / low[0])

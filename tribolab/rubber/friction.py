@@ -25,7 +25,7 @@ from tribolab.surface.moments import (
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import labelled, stamp
 
-PER_DECADE = 60  # wavenumbers per decade if the spectrum has fewer nodes
+PER_DECADE = 60  # least number of wavenumbers per decade; coarser spectra are refined
 Excitation = tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]  # spectrum, E*(omega)
 _ANGLES = 24  # Gauss-Legendre points on a quarter turn
 
@@ -40,7 +40,7 @@ def viscoelastic_friction(
     work_of_adhesion: str | float | None = None,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Return the viscoelastic friction coefficient and contact area of rubber on a rough surface.
+    """Return the hysteresis friction coefficient and contact area of rubber on a rough surface.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def viscoelastic_friction(
 def checked_sliding(
     sliding_speed: str | ArrayLike | xr.DataArray, pressure: str | ArrayLike | xr.DataArray
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return sliding speeds [m/s] and pressures [Pa]; AnalysisError if one is impossible."""
+    """Return sliding speeds [m/s] and pressures [Pa]; an AnalysisError if a value is impossible."""
     speed, over = labelled(sliding_speed, "sliding_speed"), labelled(pressure, "pressure")
     if speed.ndim > 1 or np.any(speed.values < 0) or not np.all(np.isfinite(speed.values)):
         raise AnalysisError(
@@ -166,7 +166,7 @@ def solve_hysteresis(
     growth: np.ndarray | None = None,
     area: AreaTheory = "persson",
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the friction coefficient and area at the largest wavenumber (pressures, speed).
+    """Return the friction coefficient, and the area at the largest wavenumber (pressures, speed).
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def solve_hysteresis(
         q, spectrum = refine_nodes(nodes, heights, PER_DECADE)
         energies = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
         stored, lost = (x + spectrum * e for x, e in zip((stored, lost), energies, strict=True))
-    # dims: pressures, then speeds and wavenumbers
+    # dims: pressures, speeds, wavenumbers
     relative = 1 / over.values.reshape(*over.shape, 1, 1)
     g = relative**2 / 8 * cumulative(q, stored, 3)
     with np.errstate(divide="ignore"):
@@ -198,7 +198,7 @@ def solve_hysteresis(
 def _heating(
     friction: np.ndarray, area: np.ndarray, speed: xr.DataArray, over: xr.DataArray, psd: xr.Dataset
 ) -> np.ndarray:
-    """Return the temperature rise [K] of contact spots due to hysteresis (pressures, speed)."""
+    """Return the temperature rise [K] of contact spots by hysteresis (pressures, speed)."""
     q, spectrum = spectrum_arrays(psd)
     first, second = (cumulative(q, spectrum, power)[-1] for power in (1, 2))
     if first == 0:
@@ -209,7 +209,7 @@ def _heating(
 
 
 def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
-    """Return the ratio of P(q) with and without adhesion, at rest (pressures, 1, wavenumber)."""
+    """Return P(q) with adhesion over P(q) without, at rest (pressures, 1, wavenumber)."""
     q, spectrum = refine_nodes(*spectrum_arrays(psd), PER_DECADE)
     bound = adhesion(over.values.ravel(), psd, stiffness, work)
     nodes = bound["wavenumber"].values
@@ -228,7 +228,7 @@ def _frequency_validity(
     speed: xr.DataArray,
     modulus: TabulatedModulus,
 ) -> dict[str, str]:
-    """Return the validity outside the measured frequencies; an error if no speed is near them."""
+    """Return validity attributes for speeds that excite frequencies outside the measured table."""
     share = np.zeros(np.atleast_1d(speed.values).size)
     for force, two in zip(forces, other, strict=True):
         largest = np.maximum(np.abs(force), np.abs(two))
@@ -248,7 +248,7 @@ def _frequency_validity(
 def _turn_averages(
     frequency: np.ndarray, modulus: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return integrals of |E|^2 and cos(phi) Im E over a turn of phi, with E at frequency cos(phi).
+    """Return the integrals over one turn of |E|^2 and cos(phi) Im E, with E at omega cos(phi).
 
     Both are four times their integral over a quarter: E(-omega) is the conjugate of E(omega).
     """

@@ -1,4 +1,4 @@
-"""Complex modulus of rubber against frequency: fractional Zener model or measured table."""
+"""Complex modulus of rubber over frequency: fractional Zener model or measured table."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from tribolab.units.conversion import positive
 
 
 class Modulus(Protocol):
-    """Callable that returns the complex modulus E(omega) [Pa] at angular frequencies [rad/s]."""
+    """Type of a function that returns the complex modulus E [Pa] at angular frequencies [rad/s]."""
 
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
-        """Return the complex modulus [Pa] (like the frequencies); E(-omega) = conj(E(omega))."""
+        """Return the complex modulus [Pa], with E(-omega) = conj(E(omega))."""
         ...
 
 
 @dataclass(frozen=True)
 class FractionalZener:
-    """Fractional Zener solid: rubbery and glassy plateau with a power-law loss between.
+    """Fractional Zener solid: rubbery and glassy plateaus with a power-law transition between.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class FractionalZener:
         return np.where(omega < 0, np.conj(modulus), modulus)
 
 
-# PDMS at 20 C as a substitute: the paper only plots its modulus, which is itself interpolated
+# PDMS at 20 C as a substitute: the paper shows its modulus only as a plot, which is interpolated
 # between rubber and glass. Plateaus as stated there; a glass-transition frequency of about 1e9 Hz
 # and an exponent of one half are usual for PDMS networks. Good for orders of magnitude.
 PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
@@ -83,7 +83,7 @@ PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
 
 @dataclass(frozen=True, eq=False)
 class TabulatedModulus:
-    """Measured modulus, interpolated in the logarithm of the frequency.
+    """Measured complex modulus, interpolated in the logarithm of the frequency.
 
     Between entries storage and loss are power laws of the frequency (linear in its logarithm if the
     loss is not positive). Outside the table the storage modulus is constant, and the loss falls as
@@ -105,7 +105,7 @@ class TabulatedModulus:
     remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check the table and keep read-only copies."""
+        """Check the table, and store read-only copies."""
         for name in ("angular_frequency", "storage", "loss"):
             values = np.array(getattr(self, name), dtype=float)
             values.flags.writeable = False
@@ -133,7 +133,7 @@ class TabulatedModulus:
 
     @property
     def continued(self) -> Modulus:
-        """Return the table extrapolated by the power laws of its first and last decade.
+        """Return the modulus extrapolated by the power laws of the table's first and last decade.
 
         The difference between both results shows the effect of the unknown frequencies.
         """
@@ -142,7 +142,7 @@ class TabulatedModulus:
 
 @dataclass(frozen=True, eq=False)
 class _ExtrapolatedModulus:
-    """Table extrapolated by the power laws of its first and last decade, up to a glass."""
+    """Measured modulus, extrapolated by power laws up to a glassy plateau."""
 
     table: TabulatedModulus
 
@@ -168,7 +168,7 @@ class _ExtrapolatedModulus:
 
 
 _DECADE = np.log(10.0)
-_GLASS = 3e9  # Pa; no polymer is stiffer
+_GLASS = 3e9  # Pa, upper limit of the glassy modulus of polymers
 
 
 def read_modulus(
@@ -177,7 +177,7 @@ def read_modulus(
     sheet: str | None = None,
     unit: str | None = None,
 ) -> TabulatedModulus:
-    r"""Return the storage and loss modulus over frequency from the file of a rheometer or DMA.
+    r"""Return the storage and loss modulus over frequency, from a file of a rheometer or DMA.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Prony series of a modulus, as from fits of master curves or finite elements."""
+"""Prony series of a viscoelastic modulus, e.g. from master curves or finite-element models."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.units.conversion import positive
 
 @dataclass(frozen=True, eq=False)
 class PronySeries:
-    """Modulus as a sum of a relaxed value and exponential relaxations.
+    """Modulus as a relaxed value plus a sum of exponential relaxations.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Modulus of rubber at another temperature, and flash temperature of its contact."""
+"""Rubber modulus at another temperature, and flash temperature of contact spots."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tribolab.units.conversion import positive
 from tribolab.units.quantities import si_values
 
 Shiftable = FractionalZener | TabulatedModulus | PronySeries
-_FARTHEST = 100.0  # K above the reference up to which the constants are valid
+_FARTHEST = 100.0  # K above the reference temperature, up to which WLF constants are valid
 
 
 @dataclass(frozen=True)
 class WilliamsLandelFerry:
-    """Temperature dependence of the relaxation times of a rubber (WLF equation).
+    """Temperature dependence of a rubber's relaxation times (WLF equation).
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class WilliamsLandelFerry:
             object.__setattr__(self, name, positive(getattr(self, name), "K", name))
 
     def shift_factor(self, temperature: str | float) -> float:
-        """Return the shift factor a_T [1] at a temperature [K].
+        """Return the WLF shift factor a_T [1] at a temperature [K].
 
         Raises
         ------
@@ -83,7 +83,7 @@ class WilliamsLandelFerry:
 
 
 def modulus_at(modulus: Shiftable, temperature: str | float, law: WilliamsLandelFerry) -> Shiftable:
-    """Return the modulus at another temperature, by shifting its frequencies.
+    """Return the modulus at another temperature, by time-temperature superposition.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def flash_temperature(
     conductivity: str | float = 0.16,
     diffusivity: str | float = 1.1e-7,
 ) -> np.ndarray | float:
-    """Return the upper bound of the temperature rise in a sliding contact spot.
+    """Return an upper bound of the temperature rise in a sliding contact spot.
 
     Parameters
     ----------

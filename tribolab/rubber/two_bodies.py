@@ -1,4 +1,4 @@
-"""Hysteresis friction of two rubbers, each deformed by the other's roughness."""
+"""Hysteresis friction between two rubbers, each deformed by the roughness of the other."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tribolab.units.stamping import stamp
 
 @dataclass(frozen=True, eq=False)
 class RubberBody:
-    """One of two bodies in contact.
+    """One of the two bodies: its modulus, Poisson's ratio and roughness.
 
     Parameters
     ----------
@@ -45,11 +45,11 @@ class RubberBody:
     poisson_ratio: float = 0.5
 
     def __post_init__(self) -> None:
-        """Convert Poisson's ratio and raise an error for an impossible one."""
+        """Convert Poisson's ratio, and raise an error for an impossible value."""
         object.__setattr__(self, "poisson_ratio", plane_strain_ratio(self.poisson_ratio))
 
     def compliance(self, angular_frequency: ArrayLike) -> np.ndarray:
-        """Return (1 - nu^2)/E [1/Pa] at angular frequencies [rad/s]."""
+        """Return the complex compliance (1 - nu^2)/E [1/Pa] at angular frequencies [rad/s]."""
         return np.asarray((1 - self.poisson_ratio**2) / self.modulus(angular_frequency))
 
 
@@ -60,7 +60,7 @@ def two_body_friction(
     second: RubberBody,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Return the hysteresis friction coefficient and contact area of two rough rubbers.
+    """Return the hysteresis friction coefficient and contact area of two rough rubber bodies.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def two_body_friction(
     if not spectra:
         raise AnalysisError("psd: the power spectrum of at least one body is wanted")
     q = np.unique(np.concatenate([nodes for nodes, _ in spectra]))
-    q, _ = refine_nodes(q, np.ones_like(q), PER_DECADE)  # the same bins for both spectra
+    q, _ = refine_nodes(q, np.ones_like(q), PER_DECADE)  # nodes common to both spectra
     excited: list[Excitation] = []
     total = np.zeros_like(q)
     for rough, shaken in ((first, second), (second, first)):

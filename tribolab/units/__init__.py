@@ -1,1 +1,1 @@
-"""Units, the register of quantities, and the metadata of arrays."""
+"""Units, the list of all quantities, and the metadata of arrays."""

@@ -1,4 +1,4 @@
-"""Conversion of text such as ``"31 N"`` to SI floats, which are used internally."""
+"""Conversion of text such as ``"31 N"`` to numbers in SI units, which are used internally."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from tribolab.units.spellings import plain_unit
 if TYPE_CHECKING:
     import pint
 
-_MAX_QUANTITY = 200  # letters of a number with its unit
+_MAX_QUANTITY = 200  # longest text of a number with its unit
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
-# Units that instruments write differently from pint, or that pint does not know.
+# Units that instruments write differently from pint, or that are unknown to pint.
 _SPELLINGS = {
     "microns": "um",
     "micron": "um",
@@ -50,7 +50,7 @@ _SPELLINGS = {
     "mPa s": "mPa*s",
     "mPa.s": "mPa*s",
 }
-# torques: pint reads Nm as number metric, a yarn count
+# torques: pint would read Nm as number metric, a unit of yarn
 _SPELLINGS |= {
     f"{prefix}N{sign}{length}": f"{prefix}N*{length}"
     for prefix in ("", "u", "m", "c", "k")
@@ -61,8 +61,8 @@ _SPELLINGS |= {
 
 _PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "m": 1e-3}
 _PREFIXES |= {"c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
-# Units that instruments write most often, to avoid half a second for loading pint; the
-# numbers are equal to pint's.
+# Conversions that instruments need most often, stored to avoid loading pint (half a second); the
+# factors equal those of pint.
 _USUAL = {
     ("", "1"): (1.0, 0.0),
     ("-", "1"): (1.0, 0.0),
@@ -86,27 +86,27 @@ _USUAL = {
 
 @functools.lru_cache(maxsize=1)
 def registry() -> pint.UnitRegistry[float]:
-    """Return the pint registry, created at first use."""
+    """Return the pint registry of units, which is created at first use."""
     # imported late: pint loads slowly
     import pint
 
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 
 
-# exponents and multiplication signs in typeset text
+# typeset exponents and signs
 _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
 _TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", but not the x1000 of a name
 _RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
-_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # possessive: no backtracking over blanks
+_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # matches whole runs of blanks without backtracking
 
 
 def pint_spelling(unit: str) -> str:
-    """Return a unit, typeset or from netCDF, in the spelling of pint."""
+    """Return a unit in pint's spelling, from a typeset one or from that of netCDF."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     unit = _RAISED.sub(r"^\1", _TIMES.sub("", unit))
     unit = _PRODUCT.sub("*", unit.translate(_SIGNS))
     unit = _SPELLINGS.get(unit, unit)
-    # netCDF writes m2 and s-1; the e of 1e-4 is not a name
+    # netCDF writes m2 and s-1; the e of 1e-4 is no unit name
     unit = re.sub(r"(?<=[A-Za-z])(?<!\d[eE])(-?\d)", r"**\1", unit)
     return unit.replace("^", "**")
 
@@ -117,7 +117,7 @@ class _Units(NamedTuple):
 
 
 def _units(text: str) -> _Units:
-    """Look up the names of a unit in pint; the text itself is parsed here and never evaluated."""
+    """Return the factor and pint units of a text, which is parsed here and never evaluated."""
     factor, powers = parse_unit(pint_spelling(text))
     ureg = registry()
     product = ureg.Unit("")
@@ -127,19 +127,19 @@ def _units(text: str) -> _Units:
 
 
 def _prefix(unit: str, si_unit: str) -> float | None:
-    """Scale of the SI unit with a prefix, e.g. mm/s for m/s, without loading pint (0.5 s)."""
+    """Return the factor of a prefixed SI unit, e.g. mm/s for m/s, without loading pint (0.5 s)."""
     unit, si_unit = (text.replace("^2", "2").replace("²", "2") for text in (unit, si_unit))
     if unit == si_unit:
         return 1.0
-    # a prefix is raised with its unit: mm2 is not handled here
+    # excludes powers such as mm2, in which the prefix is squared too
     if re.fullmatch(r"(m|s|N|Pa|V|J)(/s|/m2| s)?", si_unit) and unit[1:] == si_unit:
         return _PREFIXES.get(unit[0])
     return None
 
 
-# common units of instruments, and those that only measure the requested quantity
+# common units of instruments, and targets for which they can be rejected without pint
 _EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s|Hz)")
-_OF_TIME = frozenset(("Hz", "1/s", "rad/s"))  # a frequency may become one of these
+_OF_TIME = frozenset(("Hz", "1/s", "rad/s"))  # targets to which a frequency may be converted
 _ASKED = frozenset(
     ("", "1", "s", "m", "m2", "m3", "m4", "m/s", "m2/s", "1/m", "1/s", "Hz", "rad", "rad/s", "N")
     + ("N/m", "N/s", "N m", "N2 m", "J/m2", "Pa", "1/Pa", "Pa s", "V", "ohm", "K", "m/s**2")
@@ -149,7 +149,7 @@ _ASKED = frozenset(
 
 
 def _measures_another(unit: str, si_unit: str) -> bool:
-    """Return whether a common unit is known to measure another quantity, without asking pint."""
+    """Return whether a common unit obviously measures another quantity, without loading pint."""
     everyday = _EVERYDAY.fullmatch(unit)
     if everyday is None or si_unit not in _ASKED:
         return False
@@ -158,7 +158,7 @@ def _measures_another(unit: str, si_unit: str) -> bool:
 
 @functools.lru_cache(maxsize=512)
 def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[float, float]:
-    """Scale and offset from `unit` to `si_unit`: ``si = scale * x + offset``.
+    """Return scale and offset from `unit` to `si_unit`: ``si = scale * x + offset``.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         raise UnitError(f"'{shown(unit)}' is not a unit: it has more than {_MAX_QUANTITY} letters")
     if (unit, si_unit) in _USUAL:
         return _USUAL[unit, si_unit]
-    if (unit, si_unit) == ("mS", "s"):  # milliseconds: time is never in siemens
+    if (unit, si_unit) == ("mS", "s"):  # milliseconds: a time is never in millisiemens
         return 1e-3, 0.0
     if _measures_another(unit, si_unit):
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'")
@@ -204,11 +204,11 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         raise UnitError(
             f"unit '{shown(unit)}' counts an angle or cycles, and cannot become '{si_unit}'"
         )
-    if counted and si_unit != (plain := f"1/{counted.per}"):  # rarely written, such as "mm/s/mm"
+    if counted and si_unit != (plain := f"1/{counted.per}"):  # rare units such as "mm/s/mm"
         scale = conversion(unit, plain, "nothing")[0]
         return scale * conversion(plain, si_unit, bare)[0], 0.0
     try:
-        # text that breaks the grammar of units is rejected without pint
+        # reject text that breaks the grammar of units, without loading pint
         parse_unit(pint_spelling(unit))
     except UnitError as error:
         text = shown(unit)
@@ -223,16 +223,16 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         size = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
     except pint.DimensionalityError as error:
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'") from error
-    except Exception as error:  # pint raises many kinds of errors for text that is not a unit
+    except Exception as error:  # for text that is not a unit, pint raises errors of many classes
         text = shown(unit)
         raise UnitError(f"'{text}' is not a unit that is known; write e.g. '{si_unit}'") from error
     scale = float(size - zero)
-    # a decimal prefix is exact in text: 1000 um = 1 mm, not 0.9999999999999999
+    # 15 digits make decimal prefixes exact: 1000 um = 1 mm, not 0.9999999999999999
     return float(f"{scale:.15g}"), float(zero)
 
 
 def base_unit(unit: str) -> str:
-    """Return the SI base units of a unit; "m" for text that is not a unit.
+    """Return a unit expressed in SI base units; "m" for text that is not a unit.
 
     Examples
     --------
@@ -253,7 +253,7 @@ def base_unit(unit: str) -> str:
 def to_si(
     value: str | float | int, si_unit: str, name: str = "value", bare: Counted | None = None
 ) -> float:
-    """Convert ``"31 N"``, or a number already in SI, to an SI float.
+    """Return an SI number from text such as ``"31 N"``, or from a number already in SI.
 
     Parameters
     ----------
@@ -308,7 +308,7 @@ def to_si(
 
 
 def positive(value: str | float, unit: str, name: str) -> float:
-    """Convert text with a unit, or an SI number, to a positive SI float.
+    """Return a positive SI number from text with a unit, or from a number already in SI.
 
     Raises
     ------

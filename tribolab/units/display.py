@@ -1,4 +1,4 @@
-"""Units in the Jupyter display of our datasets."""
+"""Units in the notebook display of tribolab's datasets."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _HOMES = (("xarray.core.dataset", "Dataset"), ("xarray.core.dataarray", "DataArr
 
 
 def show_units() -> None:
-    """Show units next to the variables of our datasets in the running notebook.
+    """Show units next to the variables of tribolab's datasets in the running notebook.
 
     Called by `import tribolab`; no effect outside a notebook. Other datasets keep the display of
     xarray.
@@ -29,12 +29,12 @@ def show_units() -> None:
     shell = get_ipython()
     formatters = getattr(getattr(shell, "display_formatter", None), "formatters", {})
     if "text/html" in formatters:
-        for home, name in _HOMES:  # by name, without loading xarray
+        for home, name in _HOMES:  # registered by name, so that xarray need not be loaded
             formatters["text/html"].for_type_by_name(home, name, add_units)
 
 
 def add_units(data: xr.Dataset | xr.DataArray) -> str:
-    """Return xarray's HTML with the unit of each variable, for our datasets.
+    """Return xarray's HTML of a dataset with the unit of each variable, if it is tribolab's.
 
     Our datasets are recognised by a variable with our unit and long name.
 
@@ -68,7 +68,7 @@ def add_units(data: xr.Dataset | xr.DataArray) -> str:
 
 
 def _is_ours(data: xr.Dataset | xr.DataArray) -> bool:
-    # imported late for a quick start
+    # imported late: xarray's formatting loads slowly
     from tribolab.units.quantities import QUANTITIES
 
     own: Any = data.data_vars if hasattr(data, "data_vars") else {data.name: data}

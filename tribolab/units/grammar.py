@@ -1,4 +1,4 @@
-"""Grammar of units as text: parsed, never evaluated, and limited in length and size.
+"""Grammar of units: text is parsed, never evaluated, and limited in length.
 
     unit   = factor { ("*" | "/" | "." | " ") factor }
     factor = ( name | number | "(" unit ")" ) [ ("**" | "^") exponent | digits | "-" digits ]
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tribolab.core.errors import UnitError, shown
 
-_MAX_UNIT = 80  # letters of a unit; those of rheology need some 30
+_MAX_UNIT = 80  # longest unit in letters; those of rheology need some 30
 _DEEPEST = 4
 _LARGEST_POWER = 12.0
 _TOKEN = re.compile(
@@ -24,14 +24,14 @@ _TOKEN = re.compile(
 
 
 class Parsed(NamedTuple):
-    """Number and powers of names of a unit: ``10 mm/s2`` is 10, mm: 1, s: -2."""
+    """Parsed unit: a number and powers of names; ``10 mm/s2`` is 10, mm: 1, s: -2."""
 
     factor: float
     powers: dict[str, float]
 
 
 def parse_unit(text: str) -> Parsed:
-    """Parse a unit into a number and the powers of its names.
+    """Return the number and the powers of names that a unit consists of.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def parse_unit(text: str) -> Parsed:
     """
     if len(text) > _MAX_UNIT:
         raise UnitError(f"'{text[:20]} ...' is not a unit: it is longer than {_MAX_UNIT} letters")
-    if not text.strip():  # a pure number
+    if not text.strip():  # a number without a unit
         return Parsed(1.0, {})
     reader = _Reader(text)
     parsed = reader.unit(0)
@@ -65,7 +65,7 @@ def parse_unit(text: str) -> Parsed:
 
 
 class _Reader:
-    """Tokens of a unit with one token of lookahead."""
+    """Reader of a unit, one token at a time."""
 
     def __init__(self, text: str) -> None:
         self.text, self.at = text.strip(), 0
@@ -96,7 +96,7 @@ class _Reader:
             over = self.value == "/"
             if self.kind == "operator":
                 self.step()
-            elif self.kind == "number":  # "ch 1" is a channel
+            elif self.kind == "number":  # a number after a name, such as "ch 1", is a channel
                 raise self.error(f"'{shown(self.value)}' does not belong there")
             more, names = self.factor(depth)
             if over and more == 0:

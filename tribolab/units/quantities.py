@@ -1,4 +1,4 @@
-"""Dictionary of all variables: name, symbol, SI unit and long name."""
+"""List of all quantities: name, symbol, SI unit and long name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.units.reciprocals import Counted, reciprocal
 
 
 class Quantity(NamedTuple):
-    """Name, symbol (as on paper), SI unit (as in netCDF attributes) and long name.
+    """Name, symbol (as in papers), SI unit (as in netCDF attributes) and long name of a quantity.
 
     Quantities per time or length need `bare`: the meaning of a unit like "1/min"; "ask" if cycles
     and radians are both usual (`units.reciprocals`).
@@ -148,7 +148,7 @@ _ROWS = [
     ("rms_roughness", "h_rms", "m", "root-mean-square roughness"),
     ("rms_slope", "\\xi", "1", "root-mean-square slope"),
     ("rms_curvature", "\\kappa", "1/m", "root-mean-square curvature", "nothing"),
-    # surfaces, measured (surface room)
+    # surfaces: results of measured spectra
     ("scan", "", "1", "number of the scan"),
     ("dropout", "", "1", "1 where the height was filled"),
     ("gap_error", "", "1", "relative standard error due to missing heights"),
@@ -348,7 +348,7 @@ _ROWS = [
 
 
 def dictionary(rows: Iterable[tuple[Any, ...]]) -> dict[str, Quantity]:
-    """Return quantities by name; two meanings need two names.
+    """Return quantities by name; an error if two have the same name.
 
     Raises
     ------
@@ -389,11 +389,11 @@ _DERIVED = {
     "_u": "standard uncertainty of the {}",
     "_U95": "expanded uncertainty (95 %) of the {}",
 }
-_DOF = "_dof"  # counts, in any unit of the base quantity
+_DOF = "_dof"  # degrees of freedom, dimensionless whatever the unit of the quantity
 
 
 def quantity(name: str) -> Quantity:
-    """Look a variable up; ``..._std``, ``..._sem``, ``..._low``, ``..._u`` ... follow their base.
+    """Return the quantity of a name; ``..._std``, ``..._sem``, ``..._u`` etc. follow their base.
 
     Raises
     ------
@@ -419,7 +419,7 @@ def quantity(name: str) -> Quantity:
 
 
 def unit_conversion(unit: str, name: str) -> tuple[float, float]:
-    """Scale and offset from `unit` to the quantity's SI unit.
+    """Return scale and offset from `unit` to the SI unit of a quantity.
 
     Raises
     ------
@@ -436,7 +436,7 @@ def unit_conversion(unit: str, name: str) -> tuple[float, float]:
 
 
 def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
-    """Convert a quantity to an array of SI floats; entries may be text with a unit.
+    """Return the values of a quantity as SI floats; entries may be text with a unit.
 
     Raises
     ------
@@ -452,7 +452,7 @@ def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
     try:
         if np.asarray(value).dtype.kind in "fiub":
             return np.asarray(value, dtype=float)
-        # as objects: an array of text would turn numbers into text without a unit
+        # as objects, because an array of text would turn numbers into text without a unit
         entries = np.asarray(value, dtype=object)
         numbers = [
             to_si(str(cell), unit, name=name, bare=bare) if isinstance(cell, str) else float(cell)

@@ -1,4 +1,4 @@
-"""Units per time or length: cycles or radians, which SI units do not distinguish.
+"""Units per time or length: SI does not distinguish cycles and radians, conversion must.
 
 ``1/min`` of a rotation speed counts turns, ``1/s`` of a shear rate counts nothing, and ``1/s`` of
 an angular frequency is ambiguous. The quantity defines the meaning of a bare reciprocal
@@ -26,7 +26,7 @@ _METRES |= {"micron": 1e-6, "microns": 1e-6, "in": 0.0254, "inch": 0.0254, "mil"
 _LENGTHS = {**dict.fromkeys(_SECONDS, "s"), **dict.fromkeys(_METRES, "m")}
 _PER = _SECONDS | _METRES
 
-# turns in several languages: U/min, tr/min, giri/min, ob/min, omw/min
+# turns per minute in several languages: U/min, tr/min, giri/min, ob/min, omw/min
 _CYCLES = set(
     "r rev revs revolution revolutions rot rots rotation rotations turn turns cycle cycles cyc "
     "u umdr umdrehung umdrehungen tr tour tours giro giri ob obr omw varv period periods "
@@ -51,7 +51,7 @@ _FORMS = (
 
 
 class Reciprocal(NamedTuple):
-    """Unit per time or length: number of counts, and of seconds or metres."""
+    """Unit per time or length: its factor, what it counts, and "s" or "m"."""
 
     scale: float
     counts: Literal["cycles", "radians", "bare"]
@@ -60,7 +60,7 @@ class Reciprocal(NamedTuple):
 
 @functools.lru_cache(maxsize=512)
 def reciprocal(unit: str) -> Reciprocal | None:
-    """Parse a unit per time or length; None for other units.
+    """Return a parsed unit per time or length; None for other units.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def _parse_parts(count: str, per: str) -> Reciprocal | None:
 
 
 def counts_turns(unit: str) -> bool:
-    """Return whether a unit is only a name of turns or cycles.
+    """Return whether a unit is just a word for turns or cycles.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def counts_turns(unit: str) -> bool:
 
 
 def usual_reading(si_unit: str) -> Counted:
-    """Return the meaning of a bare reciprocal without a known quantity; "ask" if ambiguous.
+    """Return what a bare unit such as 1/s counts if the quantity is unknown; "ask" if ambiguous.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def usual_reading(si_unit: str) -> Counted:
 
 
 def scale_of_reciprocal(unit: str, si_unit: str, bare: Counted) -> float | None:
-    """Return the factor from a unit per time or length to SI; None for other units.
+    """Return the factor to SI of a unit per time or length; None for other units.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ _ANGLES = re.compile(
 
 
 def contains_angle(unit: str) -> bool:
-    """Return whether a unit names cycles or an angle, which pint treats as pure numbers.
+    """Return whether a unit contains cycles or an angle, which pint treats as pure numbers.
 
     Examples
     --------

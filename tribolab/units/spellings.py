@@ -1,4 +1,4 @@
-"""Spellings of units in many languages, converted to the names of pint."""
+"""Spellings of units in many languages, converted to pint's names."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class _Spellings(NamedTuple):
-    """Names of units by spelling: words, signs, and whole units."""
+    """Pint's names of units by their spelling: as words, as signs, and as complete units."""
 
     words: dict[str, str]
     signs: dict[str, str]
@@ -25,7 +25,7 @@ def _load() -> _Spellings:
     return result
 
 
-MICRO = "\u00b5\u03bc"  # the sign, and the Greek letter used for it
+MICRO = "\u00b5\u03bc"  # micro sign, and the Greek letter mu
 _SPELT = _load()
 _PREFIXES = {"nano": "n", "micro": "u", "milli": "m", "kilo": "k"}
 _APART = re.compile(rf"(?i:(?P<prefix>{'|'.join(_PREFIXES)}))[\s-]+(?=(?:N|Pa|V|A|g|m|s)(?![a-z]))")
@@ -37,7 +37,7 @@ _WRITTEN_AS = {"metre": "meter"} | dict.fromkeys(
     ("angström", "angstroem", "angstrøm", "ångström", "ångstrom"), "angstrom"
 )
 _NAME = re.compile(r"[°]?[^\W\d_]+|℃|℉")
-# pounds, ounces, grams and kilograms used as forces, also in torques
+# units of mass that are used as forces, also in torques
 WEIGHTS = {"g": "gf", "kg": "kgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
 _ON_ARM = WEIGHTS | {"lbf": "lbf", "ozf": "ozf", "kgf": "kgf", "gf": "gf", "kp": "kgf"}
 _ARM = r"(?P<arm>mm|cm|m|in|inch|ft)"
@@ -49,7 +49,7 @@ _TORQUES = tuple(
 
 
 def unit_in_words(text: str) -> str:
-    """Return the unit that a word or sign means; unknown text is returned unchanged.
+    """Return the unit that a word or a sign means; unknown text is returned unchanged.
 
     >>> unit_in_words("Sekunden"), unit_in_words("kN"), unit_in_words("MM/sec.")
     ('s', 'kN', 'mm/sec.')
@@ -61,7 +61,7 @@ def unit_in_words(text: str) -> str:
 
 
 def plain_unit(unit: str) -> str:
-    """Return the unit in the names of pint, converted from other spellings.
+    """Return a unit with pint's names instead of other spellings.
 
     Examples
     --------
@@ -90,7 +90,7 @@ _LENGTHS = {
 
 
 def unit_of_length(text: str) -> str:
-    """Return the unit of length if the text is exactly that, else "".
+    """Return the unit of length that a text consists of; "" for any other text.
 
     >>> unit_of_length("[nm]"), unit_of_length("Mikrometer"), unit_of_length("MM")
     ('nm', 'um', 'mm')
@@ -102,7 +102,7 @@ def unit_of_length(text: str) -> str:
 
 
 def _full_name(name: str) -> str:
-    """Return a unit that is spelt out, in the name used by pint.
+    """Return the pint name of a unit that is written out in full.
 
     >>> _full_name("Nanometres"), _full_name("INCHES"), _full_name("Ångström"), _full_name("Fx")
     ('nanometer', 'inch', 'angstrom', 'Fx')

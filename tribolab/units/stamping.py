@@ -1,4 +1,4 @@
-"""Metadata of arrays and datasets: names and units of the register, and origin."""
+"""Metadata of arrays and datasets: names and units of the quantities, and origin."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.units.quantities import QUANTITIES, quantity, si_values
 
 
 def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
-    """Return the dataset with ``units`` and ``long_name`` of the dictionary on every variable.
+    """Return a dataset in which each variable has the ``units`` and ``long_name`` of its quantity.
 
     Attributes left over from arithmetic (F_x/F_N would still have "N") are overwritten. Flags
     (``*_qc``, ``*_qc_tests``) keep their own attributes; text variables get a long name only if
@@ -40,7 +40,7 @@ def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
                 variable.attrs["long_name"] = QUANTITIES[str(name)].long_name
             continue
         known = quantity(str(name))
-        is_force = name == "load" and variable.attrs.get("units") == "N"  # of a ball
+        is_force = name == "load" and variable.attrs.get("units") == "N"  # the load of a ball
         unit = "N" if is_force else known.unit
         variable.attrs.update(units=unit, long_name=known.long_name)
     result.attrs.update(attrs)
@@ -56,7 +56,7 @@ def stamp_array(data: xr.DataArray, name: str) -> xr.DataArray:
 
 
 def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
-    """Convert a quantity in any form to a DataArray of floats.
+    """Return a quantity, given in any form, as a DataArray of floats.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
 
 
 def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str) -> Any:
-    """Return values in the form of an argument: a float, an array or a stamped DataArray."""
+    """Return values in the form of another argument: a float, an array or a stamped DataArray."""
     if isinstance(given, xr.DataArray):
         return stamp_array(xr.DataArray(values, coords=given.coords, dims=given.dims), name)
     return values[()] if np.ndim(values) else float(values)

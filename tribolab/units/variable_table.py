@@ -1,4 +1,4 @@
-"""Table of the variables of a dataset, with meaning and unit."""
+"""Table of the variables of a dataset, with their meaning and unit."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
-    """List the variables of a dataset with their meaning, unit and range.
+    """Return a table of the variables of a dataset: meaning, unit and range.
 
     Jupyter hides the units of a dataset behind an icon for each variable; here they are listed next
     to the names.
@@ -48,7 +48,7 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     names = [*whole.coords, *whole.data_vars]
     rows = {str(name): _row(whole[name]) for name in names}
     table = pd.DataFrame.from_dict(rows, orient="index")
-    # numbers formatted one by one: a column would use the digits of the largest
+    # format each number by itself: pandas would use the same digits for the whole column
     table = table.astype({"lowest": object, "highest": object})
     if called := RunAttributes.from_attrs(whole.attrs).columns_used:
         table["column"] = [called.get(name, "") for name in table.index]

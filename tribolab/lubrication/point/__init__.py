@@ -1,1 +1,1 @@
-"""Mixed lubrication of a ball on a flat."""
+"""Mixed lubrication of a ball on a flat (point contact)."""

@@ -1,4 +1,4 @@
-"""Fluid friction in the solved film of a round contact."""
+"""Fluid friction in the solved film of a point contact."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def point_friction(
     drag = between / 2 * (faces.gradient @ solution.fluid) * faces.along
     moving = problem.moving(solution.couette)
     cell, face = (moving.at(u * problem.gap) for u in (film, between))
-    unit = 2 * problem.gap / (problem.radius * problem.load)  # both halves of the plane
+    unit = 2 * problem.gap / (problem.radius * problem.load)  # twice the half plane
 
     def parts(sheared: float, dragged: float) -> FluidFriction:
         return FluidFriction(float(solution.couette / 6 * sheared * unit), float(dragged * unit))
@@ -52,7 +52,7 @@ def streamer_share(problem: PointProblem, solution: PointSolution) -> np.ndarray
     between = faces.mean @ solution.film
     moved = faces.along * problem.factors.transport(between * problem.gap)[2]
     moved *= solution.couette / problem.gap
-    # upstream cell of each face: the first if the flow is towards the second
+    # cell upstream of each face: the first one if the flow is towards the second
     first, second = (sparse.csr_matrix((faces.gradient * sign).maximum(0)) for sign in (-1, 1))
     upstream = sparse.diags_array((moved > 0).astype(float)) @ first
     upstream = upstream + sparse.diags_array((moved <= 0).astype(float)) @ second

@@ -1,4 +1,4 @@
-"""Mixed lubrication of a round contact at one speed, on rings and sectors."""
+"""Mixed lubrication of a point contact at one speed, on rings and sectors."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
 _STEPS = 25
 _MAX_CHANGE = 0.6  # largest relative change of the film in one step
-_CONVERGED = 1e-8  # of the highest pressure, and of the load
-_LEAK = 1e-10  # share of the smooth conductance that remains below percolation
-_UNTOUCHED = 1e-13  # contact stiffness below which a cavity cell's pressure is fixed
-FULL_LOAD = 8 / 3  # of a ball in units of P a^2, at any load
+_CONVERGED = 1e-8  # largest error relative to the maximum pressure, and to the load
+_LEAK = 1e-10  # share of the smooth conductance that is kept below percolation
+_UNTOUCHED = 1e-13  # contact stiffness below which the pressure of a cell in the cavity is fixed
+FULL_LOAD = 8 / 3  # load of a Hertz contact in units of P a^2
 
 
 class Faces(NamedTuple):
-    """Faces between the cells of a mesh: radial ones first, then those between sectors."""
+    """Faces between the cells of a mesh: first between rings, then between sectors."""
 
-    gradient: sparse.csr_matrix  # rise across each face (faces, cells)
-    sides: sparse.csr_matrix  # 1 at each of the two cells (faces, cells)
+    gradient: sparse.csr_matrix  # difference across each face (faces, cells)
+    sides: sparse.csr_matrix  # 1 for both cells of a face (faces, cells)
     mean: sparse.csr_matrix  # mean of the two cells (faces, cells)
     across: np.ndarray  # length of the face over the distance between its cells (faces)
-    along: np.ndarray  # int e_x.n over the face (faces)
+    along: np.ndarray  # int e_x.n over the face, its projected length (faces)
 
 
 @functools.lru_cache(maxsize=6)
@@ -67,21 +67,21 @@ def _faces(faces: bytes, sectors: int) -> Faces:
 
 
 class PointProblem(NamedTuple):
-    """Quantities independent of speed; lengths in a, gaps in g = a^2/2R, pressures in P."""
+    """Quantities independent of speed, with units: a, for gaps g = a^2/2R, for pressures P."""
 
     mesh: PolarMesh
     factors: FlowFactors
-    separation: Repulsion | None  # None for smooth surfaces
+    separation: Repulsion | None  # None for smooth surfaces, which never touch
     radius: float  # a [m]
     gap: float  # g [m]
     pressure: float  # P = E* g/a [Pa]
     load: float = FULL_LOAD  # in units of P a^2
-    cavity: float = 0.0  # pressure of the cavity
+    cavity: float = 0.0  # pressure of the cavity, in units of P
     thinning: ShearThinning | None = None
-    viscosity: float = 1.0  # at rest [Pa s], of a shear-thinning liquid
+    viscosity: float = 1.0  # of a shear-thinning liquid at rest [Pa s]
 
     def moving(self, couette: float) -> FlowFactors | ThinnedFactors:
-        """Return the factors at a speed, including those of a shear-thinning liquid."""
+        """Return the flow factors at a speed; they include shear thinning."""
         if self.thinning is None:
             return self.factors
         speed = couette * self.gap**2 * self.pressure / (6 * self.viscosity * self.radius)
@@ -89,11 +89,11 @@ class PointProblem(NamedTuple):
 
     @property
     def faces(self) -> Faces:
-        """Faces of the mesh."""
+        """Faces between the cells of the mesh."""
         return _faces(self.mesh.faces.tobytes(), self.mesh.sectors)
 
     def contact(self, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the contact pressure and its derivative with respect to the film."""
+        """Return the contact pressure and its derivative by the film."""
         if self.separation is None:
             return np.zeros_like(film), np.zeros_like(film)
         pressure, slope = self.separation.pressure_and_slope(film * self.gap)
@@ -101,7 +101,7 @@ class PointProblem(NamedTuple):
 
 
 class PointState(NamedTuple):
-    """Pressure in the cells, and the constant of the film u = c + r^2 + K p."""
+    """Pressure p in the cells, and the constant c of the film u = c + r^2 + K p."""
 
     pressure: np.ndarray
     constant: float
@@ -112,7 +112,7 @@ class PointState(NamedTuple):
 
 
 class PointSolution(NamedTuple):
-    """Converged state with its residuals."""
+    """Converged solution at one speed, with its residuals."""
 
     couette: float
     state: PointState
@@ -120,10 +120,10 @@ class PointSolution(NamedTuple):
     contact: np.ndarray  # pressure carried by the solid
     fluid: np.ndarray
     dry: np.ndarray  # mask of the cells in the cavity
-    flux: np.ndarray  # through the faces
-    residual: float  # of the cells' balances as pressure, relative to the maximum pressure
+    flux: np.ndarray  # flux through the faces
+    residual: float  # largest imbalance of a cell as a pressure, relative to the maximum pressure
     load_balance: float
-    flux_variation: float  # of the sum over the full film, relative to the entrained flux
+    flux_variation: float  # variation of the total flux over the full film, over the entrained flux
     iterations: int
 
 
@@ -135,20 +135,20 @@ class _Balance(NamedTuple):
     flux: np.ndarray
     conductance: np.ndarray
     flux_slope: np.ndarray
-    stiff: np.ndarray  # diagonal of the pressure part
+    stiff: np.ndarray  # diagonal of the pressure's matrix
     dry: np.ndarray
     residual: np.ndarray
 
 
 def couette_number(problem: PointProblem, viscosity: float, speed: float) -> float:
-    """Return 6 eta v a/(g^2 P), 48 eta v R^3/(E* a^4); v is twice the entrainment speed."""
+    """Return the dimensionless speed 6 eta v a/(g^2 P); v is twice the entrainment speed."""
     return 6 * viscosity * speed * problem.radius / (problem.gap**2 * problem.pressure)
 
 
 def solve_point(
     problem: PointProblem, couette: float, start: PointState, first: bool = False
 ) -> PointSolution:
-    """Return the solution of a round contact at one speed, by Newton on pressure and constant.
+    """Return the solution of a point contact at one speed, by Newton's method.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def _balance(
 
 
 def _newton_step(problem: PointProblem, now: _Balance, lack: float) -> tuple[np.ndarray, float]:
-    """Return the Newton step of pressure and constant; cavity pressures are fixed."""
+    """Return the Newton step of pressures and constant; pressures in the cavity are fixed."""
     mesh, faces = problem.mesh, problem.faces
     n = now.film.size
     full = (~now.dry / now.stiff)[:, None]

@@ -1,4 +1,4 @@
-"""Columns of a ball's Stribeck curve, by the full theory, strips, or both."""
+"""Values of a ball's Stribeck curve by the full theory, by strips, or by both."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FULL, STRIPS = "rings and sectors", "strips"
 def ball_rows(
     system: System, force: float, speeds: np.ndarray
 ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """Return the columns of a curve over increasing speeds [m/s], and where strips were used.
+    """Return the columns of a ball's curve over increasing speeds [m/s], and where strips apply.
 
     Parameters
     ----------
@@ -48,12 +48,12 @@ def _full_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[st
 
 
 def point_row(system: System, force: float, hertz: float, point: SolvedPoint) -> dict[str, float]:
-    """Return the values of a curve at one solved speed."""
+    """Return the values of a Stribeck curve at one solved speed."""
     _, problem, solution = point
     mesh, film = problem.mesh, solution.film
     solid, whole = areas_of(problem.pressure, solution.contact, solution.fluid)
     theories = (system.solver.area, alternative_area_theory(system.solver.area))
-    unit = 2 * problem.radius**2  # both halves of the plane
+    unit = 2 * problem.radius**2  # twice the half plane
     real, otherwise = (
         float(real_area(system, solid, whole, theory) @ mesh.area) * unit for theory in theories
     )
@@ -73,12 +73,12 @@ def point_row(system: System, force: float, hertz: float, point: SolvedPoint) ->
 def areas_of(
     pressure: float, contact: np.ndarray, fluid: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return contact pressure and total pressure [Pa], from which areas are computed."""
+    """Return the contact pressure and the total pressure [Pa], for computing contact areas."""
     return contact * pressure, (contact + fluid) * pressure
 
 
 def method_used(strips: Sequence[np.ndarray]) -> str:
-    """Return the name of the theory of a curve."""
+    """Return the name of the theory by which a curve was computed."""
     used = np.concatenate([np.ravel(part) for part in strips])
     if used.all():
         return STRIPS

@@ -1,4 +1,4 @@
-"""Strip approximation of a ball by line contacts along the sliding direction, within 6 %."""
+"""Strip approximation of a ball: line contacts along the sliding direction, within 6 %."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ FILM = Limit(
     "rings and sectors at 3 N and 0.3 N; beyond, the liquid leaks sideways",
 )
 _STRIPS, _CELLS = 6, 100
-_LEAK, _OBLIQUE = 0.88, 5 / 3  # entrainment of a strip, v' = 0.88 v cos^(5/3) t
+_LEAK, _OBLIQUE = 0.88, 5 / 3  # entrainment speed of a strip, v' = 0.88 v cos^(5/3) t
 
 
 def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray:
-    """Return a mask of speeds [m/s] with valid strips: thin films, half-space, Newtonian."""
+    """Return a mask of speeds [m/s] at which strips are valid: thin film, half-space, Newtonian."""
     contact = system.contact
     if system.contact.thickness < np.inf or system.liquid.thinning or not contact.is_round:
         return np.zeros(np.shape(speed), dtype=bool)
@@ -38,7 +38,7 @@ def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray
 
 
 def strip_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[str, float]]:
-    """Return the values of a curve at increasing speeds [m/s], from six strips.
+    """Return the values of a Stribeck curve at increasing speeds [m/s], from six strips.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Solution of a lubricated round contact at given speeds, starting at rest or with thick films."""
+"""Solution of a lubricated point contact at given speeds, from rest or from thick films."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from tribolab.lubrication.point.equations import (
 )
 from tribolab.lubrication.speeds import System
 
-_SHARE = 0.375  # rings relative to the cells of a line contact: 60 for 160
+_SHARE = 0.375  # number of rings over that of cells in a line contact: 60 for 160
 _SECTORS = 24
-_FAR_END, _EXTRA_RINGS = 4.0, 0.25  # extent for more rings, relative increase per decade
-_CLASS_RATIO = 10.0  # films within this factor share a mesh
-_THICK = 5.0  # film in roughnesses above which the solution starts from thick films
-_LIFTED = 0.5  # film of the lifted start, in gaps a^2/2R
-_GENTLE = 0.1  # fluid pressure of the first step from rest, relative to the contact pressure
-_SUBSTEPS = 60  # number of tolerated failures
+_FAR_END, _EXTRA_RINGS = 4.0, 0.25  # extent above which rings are added, and their share per decade
+_CLASS_RATIO = 10.0  # films whose thicknesses differ by less than this factor share a mesh
+_THICK = 5.0  # film thickness over h_rms above which the solution starts from a thick film
+_LIFTED = 0.5  # film thickness at which this start is made, over the gap a^2/2R
+_GENTLE = 0.1  # fluid over contact pressure in the first step from rest
+_SUBSTEPS = 60  # number of failed steps that are tolerated
 _FINEST = 1e-2  # smallest step in ln v
-SHORTEST = 1.5  # smallest radius at which the liquid may end, in contact radii
+SHORTEST = 1.5  # least radius of the liquid, in contact radii
 
 
 class SolvedPoint(NamedTuple):
-    """Solution at a speed [m/s], with its problem and mesh."""
+    """Solution at one speed [m/s], with its problem and mesh."""
 
     speed: float
     problem: PointProblem
@@ -44,7 +44,7 @@ class SolvedPoint(NamedTuple):
 
 
 def ball_film(contact: PointContact, viscosity: float, load: float, speed: float) -> float:
-    """Return the central film thickness [m] of a smooth ball: maximum of soft and rigid limit.
+    """Return the central film thickness [m] of a smooth ball: the larger of soft and rigid limit.
 
     Notes
     -----
@@ -59,7 +59,7 @@ def ball_film(contact: PointContact, viscosity: float, load: float, speed: float
 
 
 def expected_film(contact: PointContact, liquid: Liquid, load: float, speed: float) -> float:
-    """Return `ball_film` [m] for the viscosity at its own shear rate."""
+    """Return `ball_film` [m] for the viscosity at the film's own shear rate."""
     film = ball_film(contact, liquid.viscosity, load, speed)
     if liquid.thinning is None or not speed:
         return film
@@ -70,7 +70,7 @@ def expected_film(contact: PointContact, liquid: Liquid, load: float, speed: flo
 
 
 def point_problem(system: System, force: float, speed: float) -> PointProblem:
-    """Return scales and mesh at a load [N] and speed [m/s], including rest.
+    """Return scales and mesh for a load [N] and a speed [m/s], which may be 0.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def point_problem(system: System, force: float, speed: float) -> PointProblem:
 
 
 def solve_points(system: System, force: float, speeds: np.ndarray) -> list[SolvedPoint]:
-    """Return the solutions at increasing speeds [m/s].
+    """Return the solutions of a point contact at increasing speeds [m/s].
 
     Raises
     ------
@@ -141,12 +141,12 @@ def solve_points(system: System, force: float, speeds: np.ndarray) -> list[Solve
 def _solve_thick(
     system: System, force: float, speeds: list[float]
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
-    """Return solutions from a thick film to higher and lower speeds, and a failure if any."""
+    """Return solutions at speeds above and below that of a thick film, and a failure if any."""
     contact = _ball(system)
     a = float(hertz_half_width(force, contact))
     wanted = max(_LIFTED * a**2 / (2 * contact.radius), _THICK * system.factors.rms_roughness)
     lift = speeds[0]
-    for _ in range(60):  # h ~ v^0.6: a few steps
+    for _ in range(60):  # h ~ v^0.6, so a few steps suffice
         lift *= (wanted / expected_film(contact, system.liquid, force, lift)) ** 1.2
     problem = point_problem(system, force, lift)
     pressure = np.exp(-problem.mesh.squared)
@@ -167,7 +167,7 @@ def _solve_thick(
 def _march(
     system: System, force: float, speeds: Sequence[float], start: SolvedPoint
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
-    """Return solutions speed by speed, and the reason of an early end."""
+    """Return solutions at one speed after another, and the error if one cannot be solved."""
     solved: list[SolvedPoint] = []
     last, known = start, [(np.log(start.speed), start.solution.state)]
     budget, first = _SUBSTEPS, start.solution.couette == 0
@@ -209,7 +209,7 @@ def _march(
 def carried_state(
     problem: PointProblem, before: PointProblem, solution: PointSolution
 ) -> PointState:
-    """Return a state interpolated to another mesh by its pressure and smallest film."""
+    """Return a state on another mesh, from the interpolated pressure and the smallest film."""
     mesh, old = problem.mesh, before.mesh
     rows = solution.state.pressure.reshape(-1, old.sectors)
     moved = np.stack([np.interp(mesh.radius, old.radius, row) for row in rows.T], axis=1).ravel()
@@ -221,7 +221,7 @@ def carried_state(
 def _predicted(
     problem: PointProblem, known: list[tuple[float, PointState]], state: PointState, aim: float
 ) -> PointState:
-    """Return the secant prediction from two solutions, limited to 60 % change of any film."""
+    """Return the secant prediction from two solutions; no film changes by more than 60 %."""
     if len(known) < 2 or known[-1][0] == known[-2][0]:
         return state
     (before, old), (at, new) = known[-2:]
@@ -234,7 +234,7 @@ def _predicted(
 
 
 def _dry_start(system: System, force: float) -> tuple[PointProblem, PointState]:
-    """Return the solved contact at rest on the mesh, as a starting state."""
+    """Return the solved contact at rest, as the starting state."""
     problem = point_problem(system, force, 0.0)
     assert system.separation is not None
     mesh = problem.mesh
@@ -245,7 +245,7 @@ def _dry_start(system: System, force: float) -> tuple[PointProblem, PointState]:
 
 
 def _gentle_speed(problem: PointProblem, dry: PointSolution, system: System) -> float:
-    """Return the speed [m/s] at which the fluid pressure is small compared with the contact's."""
+    """Return the speed [m/s] at which the fluid pressure is small relative to the contact's."""
     thinnest = float(dry.film.min())
     phi = float(problem.moving(0.0).transport(np.array([thinnest * problem.gap]))[0][0])
     number = _GENTLE * thinnest**2 * max(phi, 1e-6)
