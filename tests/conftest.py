@@ -14,6 +14,9 @@ from hypothesis import settings
 from tribolab.reading.raw.server import stop_reading
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+# what is compiled is kept: children and the next run start in less time
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 # of jsonschema, for a format that no schema of ours has: its grammar takes a second to build
 sys.modules.setdefault("rfc3987_syntax", None)
 # workers of the suite beside each other: more threads of BLAS than processors only wait
