@@ -32,7 +32,7 @@ _NEGLIGIBLE = 1e-11  # share of the elastic energy below which adhesion is negle
 _CLOSE_GUESS = 2e-5  # relative error below which a guessed P(q) needs no correction
 _SMALLEST_AREA = 1e-15
 _LARGEST_RESIDUAL = 1e-8
-# Below this share of E* xi/2 the limit p -> 0 is used: the theory is linear in p there, and
+# Below this share of E* xi/2 the limit p -> 0 is used: the theory is then linear in p, and
 # differences of probabilities near 1 lose significant digits.
 _SMALL_PRESSURE = 1e-4
 
@@ -59,7 +59,7 @@ class Interface:
     c_a: float  # factor of the detachment stress, Eq. (12)
     slope: float  # xi of Eq. (12)
     diffusion: Diffusion
-    elastic: np.ndarray  # E*/4 2 pi int q^2 C dq over each step [J/m2] (n - 1)
+    elastic: np.ndarray  # E*/4 2 pi int q^2 C dq over each step of wavenumber [J/m2] (n - 1)
 
     @classmethod
     def on_nodes(

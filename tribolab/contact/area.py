@@ -77,7 +77,7 @@ def _table(area: AreaTheory) -> tuple[PchipInterpolator, float]:
     t, weight = np.polynomial.legendre.leggauss(6)
     half = (nodes[0] - nodes[1]) / 2
     z = np.exp(nodes[:-1, None] - half * (1 + t))
-    # dw = -d(ln z)/z^2
+    # substitution dw = -d(ln z)/z^2
     pieces = half * (1 / (z**2 * _SHARES[area](erf(z)))) @ weight
     grown = 1 / (2 * _FIRST**2) + np.append(0.0, np.cumsum(pieces))
     log_y = -np.log(2 * grown) / 2

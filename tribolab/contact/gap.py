@@ -37,9 +37,9 @@ _PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points per pa
 class _Openings(NamedTuple):
     """Area that opens at each step of magnification, with its mean gap and rms roughness."""
 
-    share: np.ndarray  # (pressure, bin)
-    gap: np.ndarray  # u1 (pressure, bin) [m]
-    height: np.ndarray  # (pressure, bin) [m]
+    share: np.ndarray  # share of the nominal area (pressure, bin)
+    gap: np.ndarray  # mean gap u1 [m] (pressure, bin)
+    height: np.ndarray  # rms height of finer roughness [m] (pressure, bin)
 
 
 @over_dims(psd=("wavenumber",))
@@ -286,7 +286,7 @@ def _density(
     density = np.zeros_like(at)
     ends = (first + gap) * narrow / np.sqrt(2), (first - gap) * narrow / np.sqrt(2)
     density[0] = share @ (erf(ends[0]) + erf(ends[1])) / (2 * first)
-    # single precision is twice as fast, with a relative error of 1e-6
+    # single precision is twice as fast, and accurate to 1e-6
     last = int(np.searchsorted(at, np.max(gap + _MAX_HEIGHTS * height)))
     unit = factor.max()
     factor, b = (factor / unit).astype(np.float32), b.astype(np.float32)

@@ -173,7 +173,7 @@ def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[floa
     one, square = np.linalg.solve(matrix, np.stack([np.ones(order + 1), t**2], axis=1)).T / np.pi
     depth = square[-1] / one[-1]
     phi = depth * one - square
-    # phi is even in t: p(0) = -int phi'/t dt, with the polynomial through phi in t^2
+    # phi is even in t: p(0) = -int phi'/t dt, from a polynomial in t^2 through phi
     poly = np.polynomial.Chebyshev.fit(t**2, phi, 16)
     inner = t[:-1]
     steep = 2 * poly.deriv()(inner**2)  # phi'(t)/t

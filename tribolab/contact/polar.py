@@ -58,7 +58,7 @@ def polar_mesh(
     at = at[(at >= 0) & (at <= end / size)]
     density = _EDGE / (np.abs(at - 1) + edge) + _INSIDE / (1 + at**4) + _FAR / (at + 0.3)
     count = np.append(0, np.cumsum(np.diff(at) * (density[1:] + density[:-1]) / 2))
-    count, kept = np.unique(count, return_index=True)  # samples may coincide within rounding
+    count, kept = np.unique(count, return_index=True)  # rounding may make samples coincide
     faces = size * PchipInterpolator(count, at[kept])(np.linspace(0, count[-1], rings + 1))
     faces[[0, -1]] = 0.0, end
     radius = (faces[1:] + faces[:-1]) / 2

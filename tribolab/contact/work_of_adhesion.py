@@ -1,4 +1,4 @@
-"""Work of adhesion from surface energies, dry and in a liquid, with its literature spread."""
+"""Work of adhesion, dry and in a liquid, from surface energies and their literature spread."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class SurfaceEnergies:
     angle_2: StatedWork
 
     def __post_init__(self) -> None:
-        """Convert text to SI ranges and raise an error for bounds that exclude the value."""
+        """Convert text to SI ranges and raise an error if the bounds exclude the value."""
         for field in fields(self):
             read = _angle if field.name.startswith("angle") else _energy
             stated = getattr(self, field.name)
@@ -75,13 +75,13 @@ class SurfaceEnergies:
 
     @property
     def dry(self) -> float:
-        """Work of adhesion of the dry solids [J/m2], Eq. (13), at the chosen values."""
+        """Work of adhesion [J/m2] of the dry solids at the chosen values, Eq. (13)."""
         solid_1, solid_2, *_ = _ranges(self)
         return float(_dry(solid_1.value, solid_2.value))
 
     @property
     def wet(self) -> float:
-        """Work of adhesion in the liquid [J/m2], Eq. (14), at the chosen values."""
+        """Work of adhesion [J/m2] in the liquid at the chosen values, Eq. (14)."""
         *_, liquid, angle_1, angle_2 = _ranges(self)
         return float(_wet(self.dry, liquid.value, angle_1.value, angle_2.value))
 
@@ -190,7 +190,7 @@ def _angle(value: str | float, name: str) -> float:
     return angle
 
 
-# Values and literature bounds of Sec. 5 of Xu et al. (2026), which gives only one value for the
+# Values and literature bounds of Sec. 5 of Xu et al. (2026), which states a single value for the
 # surface tension of glycerol.
 PDMS_PMMA_GLYCEROL = SurfaceEnergies(
     solid_1=(22e-3, 19.4e-3, 24.3e-3),

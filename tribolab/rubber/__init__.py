@@ -1,4 +1,4 @@
-"""Rubber: viscoelastic modulus and hysteresis friction on rough surfaces."""
+"""Rubber: viscoelastic modulus, and hysteresis friction on rough surfaces."""
 
 from __future__ import annotations
 

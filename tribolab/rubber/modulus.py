@@ -53,7 +53,7 @@ class FractionalZener:
     exponent: float
 
     def __post_init__(self) -> None:
-        """Convert text to SI values and raise an error for impossible ones."""
+        """Convert text to SI values and raise an error if one is impossible."""
         for name, unit in (("relaxed", "Pa"), ("unrelaxed", "Pa"), ("relaxation_time", "s")):
             object.__setattr__(self, name, positive(getattr(self, name), unit, name))
         if self.unrelaxed < self.relaxed:
@@ -77,7 +77,7 @@ class FractionalZener:
 
 # PDMS at 20 C as a substitute: the paper shows its modulus only as a plot, which is interpolated
 # between rubber and glass. Plateaus as stated there; a glass-transition frequency of about 1e9 Hz
-# and an exponent of one half are usual for PDMS networks. Good for orders of magnitude.
+# and an exponent of one half are usual for PDMS networks. Valid for orders of magnitude only.
 PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
 
 

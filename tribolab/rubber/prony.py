@@ -47,7 +47,7 @@ class PronySeries:
     relaxation_times: np.ndarray = field(repr=False)
 
     def __post_init__(self) -> None:
-        """Convert text to SI values and raise an error for impossible ones."""
+        """Convert text to SI values and raise an error if one is impossible."""
         object.__setattr__(self, "relaxed", positive(self.relaxed, "Pa", "relaxed"))
         for name in ("moduli", "relaxation_times"):
             values = np.array(getattr(self, name), dtype=float)

@@ -92,7 +92,7 @@ def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
 
 
 def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
-    """Return the share of the mean square height in a periodic wave, and its wavelength [m].
+    """Return a periodic wave's share of the mean square height, and its wavelength [m].
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:
-    """Return the largest magnitude of the finite values of each row; NaN without any."""
+    """Return the largest magnitude of the finite values of each row; NaN if there are none."""
     largest = np.maximum(np.fmax.reduce(rows, axis=-1), -np.fmin.reduce(rows, axis=-1))
     for row in np.flatnonzero(np.isinf(largest)):
         finite = rows[row][np.isfinite(rows[row])]

@@ -138,7 +138,7 @@ def self_affine_psd(
     high: str | float,
     points: int = 1201,
 ) -> xr.Dataset:
-    """Return the spectrum of a self-affine surface of given rms roughness with a roll-off.
+    """Return the spectrum of a self-affine surface with a roll-off and a given rms roughness.
 
     Parameters
     ----------

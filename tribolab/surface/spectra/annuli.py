@@ -187,14 +187,14 @@ def _balance_power(
     def excess(s: float) -> float:
         return _mean_square(edges, q, c * np.exp(s * error**2)) / whole - 1
 
-    most = 1.6 / float(error.max() ** 2)  # at most a factor of five
+    most = 1.6 / float(error.max() ** 2)  # limits any change of C to a factor of five
     if excess(-most) > 0 or excess(most) < 0:
         return c
     return c * np.exp(brentq(excess, -most, most, xtol=1e-12 * most, rtol=1e-12) * error**2)
 
 
 def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
-    """Return the spectrum at nodes, one for each annulus, with its band.
+    """Return the spectrum with one node for each annulus, and its confidence band.
 
     The mean square height of the power laws between nodes differs from that of the annuli by a few
     per cent, mostly near the roll-off. The difference is distributed over all nodes, mostly to the

@@ -24,15 +24,15 @@ from tribolab.surface.spectra.binning import correlation, log_bins, window
 from tribolab.units.stamping import stamp
 
 _MIN_POINTS_OF_SIDE = 16
-_BLOCK = 256  # rows windowed at a time
+_BLOCK = 256  # map rows multiplied by the window at a time
 
 
 def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return the mean power of windowed maps (scan, y, x) in a quadrant, and mean square."""
+    """Return one quadrant of the mean power of windowed maps (scan, y, x), and the mean square."""
     rows, columns = maps.shape[-2:]
     power, square = np.zeros((rows // 2 + 1, columns // 2 + 1)), 0.0
     lines = np.empty((rows, columns // 2 + 1), complex)
-    for heights in maps:  # one transform at a time, windowed by blocks of rows: maps are large
+    for heights in maps:  # transform maps one by one, window blocks of rows: maps are large
         for first in range(0, rows, _BLOCK):
             block = slice(first, first + _BLOCK)
             windowed = heights[block] * window(columns)
@@ -48,7 +48,7 @@ def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 def _multiplicity(count: int, size: int) -> np.ndarray:
-    """Return how many Fourier lines of an axis of `size` points each of `count` represents."""
+    """Return the number of Fourier lines that each of the `count` lines of an axis represents."""
     number = np.full(count, 2.0)
     number[0] = 1.0
     if size % 2 == 0:
@@ -113,7 +113,7 @@ def psd_2d_of_map(
     scale = steps[0] * steps[1] / (4 * np.pi**2 * size[0] * size[1])
     ky, kx = (2 * np.pi * np.fft.rfftfreq(n, d) for n, d in zip(size, steps, strict=True))
     q = np.hypot(ky[:, None], kx)
-    # the quadrant has the sums of +ky and -ky; +kx and -kx have equal power
+    # the quadrant holds the sums of +ky and -ky; +kx and -kx have equal power
     along_y, along_x = (_multiplicity(k.size, n) for k, n in zip((ky, kx), size, strict=True))
     spacing = max(2 * np.pi / (n * d) for n, d in zip(size, steps, strict=True))
     waves = int(min(np.pi / d for d in steps) / spacing)
@@ -127,7 +127,7 @@ def psd_2d_of_map(
         )
     bins = log_bins(waves, 3, bins_per_decade, 1)
     edges = bins.edges * spacing
-    annulus = np.digitize(q.ravel(), edges)  # 0 and the last are outside all annuli
+    annulus = np.digitize(q.ravel(), edges)  # numbers 0 and last are outside all annuli
 
     def sums(values: np.ndarray) -> np.ndarray:
         return np.bincount(annulus, (values * along_x).ravel(), bins.starts.size + 2)[1:-1]
@@ -138,11 +138,11 @@ def psd_2d_of_map(
         return sums(values) * (scale / lines)
 
     mean = annuli(power)
-    q[0, 0] = 1.0  # not in any annulus
+    q[0, 0] = 1.0  # the mean (q = 0) is in no annulus; 1 avoids log(0)
     node = np.exp(sums(np.log(q) * along_y[:, None]) / lines)
     correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
     independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)
-    known = np.arange(node.size) > 0  # form removal and the window affect the first annulus
+    known = np.arange(node.size) > 0  # form removal and the window distort the first annulus
     lost, effect = float("inf"), None
     if missing is not None:
 

@@ -64,7 +64,7 @@ def log_bins(lines: int, lowest: int, per_decade: float, at_least: int = 4) -> B
 
 
 def window(points: int, flanks: float = 1.0) -> np.ndarray:
-    """Return a window of unit mean square whose ends rise and fall like a Hann window.
+    """Return a window of unit mean square with ends that rise and fall like a Hann window.
 
     Parameters
     ----------

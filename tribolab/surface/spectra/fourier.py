@@ -68,7 +68,7 @@ def binned_power(
     scans, points = height.shape
     chunk = max(1, min(scans, _CHUNK_BYTES // (8 * length)))
     work = np.zeros((chunk, length))
-    last = 2 * (length // 2)  # position of the real part of the Nyquist line
+    last = 2 * (length // 2)  # index of the real part of the Nyquist line
     total, lines, heights = np.zeros(bins.starts.size), 0.0, 0.0
     for first in range(0, scans, chunk):
         part = np.asarray(height[first : first + chunk], dtype=float)

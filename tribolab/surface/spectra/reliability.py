@@ -13,7 +13,7 @@ TIP_SHARE = 0.15
 _NOISE_MARGIN = 20.0  # least ratio of C_1D to the noise floor: noise then adds at most 5 %
 _FLOOR = 0.7  # the noise floor is taken from this share of the Nyquist wavenumber upwards
 _FILTER_LOSS = 0.05  # largest share of the power that a profile filter may have removed
-_GAUSS = np.log(2) / (2 * np.pi) ** 2  # ISO 16610-21: transmission exp(-_GAUSS (q cutoff)^2)
+_GAUSS = np.log(2) / (2 * np.pi) ** 2  # transmission of ISO 16610-21: exp(-_GAUSS (q cutoff)^2)
 
 
 def tip_cutoff(
