@@ -1,4 +1,4 @@
-"""Flow and friction factors of Patir and Cheng, for comparison."""
+"""Flow and friction factors of Patir and Cheng, for comparison with other factors."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
     correction = 11.1 * high**2.31 * np.exp(-2.38 * high + 0.11 * high**2)
     correction = correction * (high / nominal) ** 2
     mean = _mean_gap(nominal)
-    part = nominal / mean  # h/u
+    part = nominal / mean  # nominal over mean gap, h/u
     conductance = (1 - 0.90 * np.exp(-0.56 * nominal)) * part**3
     drag = np.maximum((1 - 1.40 * np.exp(-0.66 * nominal)) * part, 1e-3)
     closing = float(_mean_gap(np.array(0.0)))
@@ -80,7 +80,7 @@ def _mean_gap(distance: np.ndarray) -> np.ndarray:
 
 
 def _mean_inverse(distance: np.ndarray) -> np.ndarray:
-    """Return the mean of 1/gap over Gaussian heights, by the trapezoidal rule in ln(gap)."""
+    """Return the mean of 1/gap for Gaussian heights, by the trapezoidal rule in ln(gap)."""
     log_gap = np.linspace(np.log(_CONTACT), np.log(80.0), 4001)
     bell = np.exp(-((np.exp(log_gap) - distance[:, None]) ** 2) / 2) / np.sqrt(2 * np.pi)
     return np.trapezoid(bell, log_gap, axis=1)

@@ -1,4 +1,4 @@
-"""Settings of a fit of the shear stress, as a frozen object."""
+"""Settings of a fit of the shear stress."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FREE = ("viscosity", "youngs_modulus")
 
 @dataclass(frozen=True)
 class FitSettings:
-    """Points and free parameters of a fit, and errors shared by the points.
+    """Settings of a fit: points, free parameters, and errors common to several points.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class FitSettings:
     inputs: xr.Dataset | None = None
 
     def __post_init__(self) -> None:
-        """Convert text to SI values and raise an error for impossible settings."""
+        """Convert text to SI values and raise an error if a setting is impossible."""
         unknown = [name for name in self.free if name not in _FREE]
         if unknown:
             raise AnalysisError(
@@ -85,7 +85,7 @@ SETTINGS = {field.name for field in fields(FitSettings)}
 def merge_old_settings(
     settings: FitSettings | None, options: Mapping[str, Any]
 ) -> tuple[FitSettings, dict[str, Any]]:
-    """Return the settings including arguments of the last release, and all other options."""
+    """Return the settings, including arguments of the last release, and all other arguments."""
     old = {name: value for name, value in options.items() if name in SETTINGS}
     if old:
         warnings.warn(

@@ -1,4 +1,4 @@
-"""Changes of a computed curve due to uncertain load, radius and modulus."""
+"""Effect of uncertain load, radius and modulus on a computed friction curve."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
 
 _INPUTS = ("load", "radius", "youngs_modulus")
-_LN_STEP = 0.02  # of ln x, on both sides
+_LN_STEP = 0.02  # step of ln(input) up and down, for derivatives
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 _SOLID = "friction_per_shear_stress"
 _MOVED = ("fluid_part", "solid_part", "solid_part_other")
@@ -88,11 +88,11 @@ def model_inputs(
     parameters = parameters_of(viscosity, 0.0, **model)
     cells = min(parameters.solver.cells, limits.MAX_CELLS_OF_CHANGE.value)
     solver = replace(parameters.solver, cells=cells)
-    if contact.is_round:  # the reduced theory is sufficient for a change
+    if contact.is_round:  # for differences, the strip approximation of a ball is accurate enough
         solver = replace(parameters.solver, method="auto")
     parameters = parameters._replace(solver=solver)
     rows = []
-    near: SolvedCurve | None = None  # start from the previous curve: it differs by a few percent
+    near: SolvedCurve | None = None  # each curve starts from the previous one, which is similar
     for name, error in errors.items():
         ends = []
         for factor in (np.exp(_LN_STEP), np.exp(-_LN_STEP)):
@@ -115,14 +115,14 @@ def model_inputs(
 
 
 def _columns(above: xr.Dataset, below: xr.Dataset) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the friction of the fluid and both contact areas, at both ends of an input."""
+    """Return fluid friction and contact areas by both theories, for both values of an input."""
     names = (_SOLID, f"{_SOLID}_other")
     fluid = [end[_PARTS[0]].values + end[_PARTS[1]].values for end in (above, below)]
     return [(fluid[0], fluid[1]), *((above[n].values, below[n].values) for n in names)]
 
 
 def moved_friction(inputs: xr.Dataset, shear_stress: float, speed: np.ndarray) -> np.ndarray:
-    """Return the change of friction by each input at given speeds (model_input, sliding_speed).
+    """Return the change of friction due to each input at given speeds (model_input, sliding_speed).
 
     Parameters
     ----------

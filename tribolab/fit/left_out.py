@@ -1,4 +1,4 @@
-"""Effects that a mixed-lubrication model leaves out, each with its size and the reason."""
+"""Effects that a mixed-lubrication model neglects, each with its size and the reason."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from tribolab.core.wording import percent
 from tribolab.fit import limits
 from tribolab.surface.moments import rms_roughness
 
-_SHEET_THICKNESSES = (10e-3, 5e-3)  # m, of usual rubber sheets
+_SHEET_THICKNESSES = (10e-3, 5e-3)  # typical rubber sheets [m]
 
 
 class LeftOut(NamedTuple):
-    """An effect that is not in the model."""
+    """An effect that the model neglects."""
 
     name: str
-    size: str  # empty if it cannot be estimated from what is known
+    size: str  # empty if it cannot be estimated
     why: str
 
 
 def effects_not_modelled(
     contact: Contact, load: float, viscosity: float, psd: xr.Dataset | None
 ) -> list[LeftOut]:
-    """Return the effects that are neither in the model nor varied, with their size if known.
+    """Return the effects that are neither modelled nor varied, with their size if it is known.
 
     Parameters
     ----------
@@ -66,12 +66,12 @@ def effects_not_modelled(
 
 
 def describe_effects(effects: Sequence[LeftOut]) -> str:
-    """Return the effects as text, with their sizes."""
+    """Return the neglected effects and their sizes as text."""
     return "; ".join(f"{e.name} ({e.size or 'size unknown'}): {e.why}" for e in effects)
 
 
 def _ends(contact: LineContact, a: float) -> list[LeftOut]:
-    """Return what the ends of a cylinder do.
+    """Return the effects of the ends of a cylinder.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Limits for the conclusions from fits of models to friction."""
+"""Limits for conclusions from fits of models to friction."""
 
 from tribolab.core.limit import Count, Limit
 

@@ -1,4 +1,4 @@
-"""Test whether friction in several liquids is one function of viscosity times speed."""
+"""Test whether friction in several liquids is a single function of viscosity times speed."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from scipy.special import fdtrc
 
 from tribolab.core.errors import AnalysisError
 
-_SPLINE_COEFFICIENTS = 14  # with seven the test is insensitive
+_SPLINE_COEFFICIENTS = 14  # with seven coefficients the test is insensitive
 
 
 class Collapse(NamedTuple):
-    """F-test of a common curve against a level and a slope for each liquid.
+    """F-test of one common curve against a separate level and slope for each liquid.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Collapse(NamedTuple):
     fitted: np.ndarray
 
     def _repr_html_(self) -> str:
-        """Return HTML of the test and of each liquid's level and slope."""
+        """Return HTML of the test, and of the level and slope of each liquid."""
         liquids = "".join(
             f"<tr><td>{number}</td><td>{level:.3g}</td><td>{slope:.3g}</td></tr>"
             for number, (level, slope) in enumerate(zip(self.level, self.slope, strict=True), 1)
@@ -53,7 +53,7 @@ def collapse_test(
     level_error: float = 0.05,
     viscosity_error: float = 0.1,
 ) -> Collapse:
-    """Test whether curves in several liquids collapse on one function of eta v.
+    """Test whether curves in several liquids collapse on one function of viscosity times speed.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def collapse_test(
     rss, best = _least(white[1], target)
     rss_more, wide = _least(np.hstack(white[1:]), target)
     freedom = x.size - np.linalg.matrix_rank(np.hstack(white[1:]))
-    # the errors are known: use at least 1 for chi-square per degree of freedom
+    # the errors are known, so chi-square per degree of freedom is taken as at least 1
     statistic = (rss - rss_more) / extra / max(rss_more / freedom, 1.0)
     found = wide[_SPLINE_COEFFICIENTS:]
     order = np.argsort(x)
@@ -142,7 +142,7 @@ def collapse_test(
 
 
 def _spline(x: np.ndarray) -> np.ndarray:
-    """Return cubic B-splines with knots at quantiles (points, coefficients)."""
+    """Return cubic B-splines with knots at quantiles of x (points, coefficients)."""
     inner = np.quantile(x, np.linspace(0, 1, _SPLINE_COEFFICIENTS - 2)[1:-1])
     low, high = x.min(), x.max()
     knots = np.concatenate([np.full(4, low), inner, np.full(4, high)])

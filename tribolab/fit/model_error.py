@@ -1,4 +1,4 @@
-"""Uncertainty of a computed Stribeck curve from its unknowns, varied one at a time."""
+"""Uncertainty of a computed Stribeck curve; unknown inputs are varied one at a time."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def model_uncertainty(
     """
     warn_of_old("model_uncertainty", options)
     known, single = merge_old_options(unknowns, options)
-    if psd is not None:  # a smooth surface has no roughness to vary
+    if psd is not None:  # roughness of a smooth surface cannot be varied
         rough = rough_band(psd)[0]
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
     force = positive(load, contact.load_unit, "load")
@@ -186,7 +186,7 @@ def model_uncertainty(
 
 
 class _Given(NamedTuple):
-    """A model with load and speeds, in SI."""
+    """Model with load and speeds, in SI."""
 
     contact: Contact
     psd: xr.Dataset | None
@@ -195,20 +195,20 @@ class _Given(NamedTuple):
     parameters: Parameters
 
     def changed(self, change: Mapping[str, Any]) -> _Given:
-        """Return the model changed by one end of a range."""
+        """Return the model with the changes of one end of a range."""
         own = {name: value for name, value in change.items() if name in self._fields}
         left = {name: value for name, value in change.items() if name not in own}
         return self._replace(**own, parameters=parameters_of(*self.parameters, **left))
 
     def solved(self, near: SolvedCurve | None = None) -> SolvedCurve:
-        """Solve the model, starting from a similar solution if available."""
+        """Return the solved model; a similar solution speeds this up."""
         return solve_curve(self.contact, self.psd, self.load, self.speed, self.parameters, near)
 
 
 def _base(
     contact: Contact, psd: xr.Dataset | None, load: float, parameters: Parameters, known: Unknowns
 ) -> Base:
-    """Return the model for the variations, with the ranges in SI."""
+    """Return the model that is varied, with all ranges in SI."""
     liquid, interface, solver = parameters
     work = interface.work_of_adhesion
     return Base(
@@ -239,7 +239,7 @@ def _base(
 def _all_ends(
     coarse: _Given, varied: list[Variation], start: SolvedCurve, refit: bool
 ) -> tuple[np.ndarray, np.ndarray, list[dict[str, str]]]:
-    """Return friction (variation, end, speed), change of sigma_f, validity; NaN if missing."""
+    """Return friction (variation, end, speed), change of sigma_f, and validity; NaN if missing."""
     reference = start.curve
     stress = coarse.parameters.interface.shear_stress
     aim = reference["friction_coefficient"].values
@@ -272,7 +272,7 @@ def _all_ends(
 
 
 def _reuse_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:
-    """Return the curve of an end that does not change the film, from the reference; else None."""
+    """Return the curve of a variation that leaves the film unchanged; None for other variations."""
     if end.keys() == {"area"}:
         return reference.assign(
             friction_per_shear_stress=reference["friction_per_shear_stress_other"]
@@ -291,7 +291,7 @@ def _range(
     name: str,
     least: float = 0.0,
 ) -> tuple[float, float] | None:
-    """Return the ends of a range in SI around its value, both above the least possible value."""
+    """Return a range in SI after checking that it contains the value and stays above `least`."""
     if given is None:
         return None
     read = positive if least == 0 else to_si
@@ -304,7 +304,7 @@ def _range(
 
 
 def _vary_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarray]:
-    """Return the error of the fitted stress as a variation, and mu at its ends, without solving."""
+    """Return the fit error of the shear stress as a variation, with mu at both ends."""
     stress, mu = reference.attrs["shear_stress_Pa"], reference["friction_coefficient"].values
     ends = np.array([max(stress - NORMAL * error, 0.0), stress + NORMAL * error])
     texts = (f"{ends[0] / 1e6:.3g} MPa", f"{ends[1] / 1e6:.3g} MPa")
@@ -315,7 +315,7 @@ def _vary_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.nda
 
 
 def _quadrature(deviation: np.ndarray) -> np.ndarray:
-    """Return the root sum of squares of the variations' larger positive deviations."""
+    """Return the root sum of squares over variations, each with the larger of its two changes."""
     if deviation.shape[0] == 0:
         return np.zeros(deviation.shape[-1])
     larger = np.nanmax(deviation, axis=1).clip(0)
@@ -325,14 +325,14 @@ def _quadrature(deviation: np.ndarray) -> np.ndarray:
 def _table(
     varied: list[Variation], mu: np.ndarray, height: np.ndarray, speed: np.ndarray
 ) -> dict[str, tuple[str, Any]]:
-    """Return ends, reasons and largest changes of each variation."""
+    """Return a table of ends, reasons and largest changes of each variation."""
     words = {
         "variation_low": [variation.texts[0] for variation in varied],
         "variation_high": [variation.texts[1] for variation in varied],
         "variation_reason": [variation.reason for variation in varied],
     }
     table: dict[str, tuple[str, Any]] = {
-        name: ("variation", np.array(texts, dtype=str))  # text also without variations
+        name: ("variation", np.array(texts, dtype=str))  # dtype str also without variations
         for name, texts in words.items()
     }
     for name, over in (("largest_change", height.max()), ("largest_relative_change", height)):

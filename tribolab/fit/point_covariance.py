@@ -1,4 +1,4 @@
-"""Errors of the points of a curve with their shared parts: the covariance for a fit."""
+"""Errors of the points of a curve, individual and shared, and their covariance for a fit."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from scipy.linalg import cholesky, solve_triangular
 
 from tribolab.metrology.budget_curve import shared_parts
 
-_MIN_ERROR = 1e-15  # minimum error of a coefficient, also of points that fit exactly
+_MIN_ERROR = 1e-15  # smallest error of a friction coefficient, for points that fit exactly
 
 
 class PointErrors(NamedTuple):
-    """Errors of points: individual errors, and shared parts that shift several points together.
+    """Errors of points: individual ones, and shared ones that shift several points together.
 
     Parameters
     ----------
@@ -30,19 +30,19 @@ class PointErrors(NamedTuple):
 
     @property
     def covariance(self) -> np.ndarray:
-        """Covariance of the points: ``diag(own^2) + sum_j c_j c_j^T u_j^2`` (point, point)."""
+        """Covariance of the points, ``diag(own^2) + sum_j c_j c_j^T u_j^2`` (point, point)."""
         return np.diag(self.own**2) + self.shared.T @ self.shared
 
     def at(self, which: np.ndarray | slice) -> PointErrors:
-        """Return the errors of some of the points."""
+        """Return the errors of a selection of the points."""
         return PointErrors(self.own[which], self.shared[:, which])
 
     def with_part(self, part: np.ndarray) -> PointErrors:
-        """Return the errors with one or more additional shared parts (point) or (part, point)."""
+        """Return the errors with one or more shared errors added, (point) or (part, point)."""
         return PointErrors(self.own, np.vstack([self.shared, part]))
 
     def whitened(self, values: np.ndarray) -> np.ndarray:
-        """Return values in units of their errors, decorrelated by the Cholesky factor.
+        """Return values divided by the Cholesky factor of the covariance, which decorrelates them.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class PointErrors(NamedTuple):
 
 
 def shared_errors(measured: xr.Dataset, speed: np.ndarray) -> np.ndarray:
-    """Return the shared parts of the uncertainty of a measured curve (part, sliding_speed).
+    """Return the shared errors of a measured curve (part, sliding_speed).
 
     Parameters
     ----------

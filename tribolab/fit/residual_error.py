@@ -1,4 +1,4 @@
-"""Error of a fit if the errors of neighbouring points are correlated."""
+"""Standard error of a fit if the errors of neighbouring points are correlated."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from tribolab.fit import limits
 
 _CORRELATION_GRID = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
 _GROWTH_GRID = 1.35 ** np.arange(18)
-# Prior of the points' errors: the stated sizes are right with 90 % probability, and neighbours are
-# then independent with 50 %. Errors that are too small mostly neglect what the points of a run have
-# in common: then neighbours are independent with 10 %. A correlation of 0.5 is hardly visible in 13
-# residuals, whose slow part the fit removes, but increases the error by a factor of 1.6: a higher
-# prior of independence would dominate. Chosen on simulated curves of 13 speeds for 95 % coverage
-# with independent and correlated errors of the stated size
+# Prior of the points' errors: their stated size is correct with 90 % probability, and neighbours
+# are then independent with 50 %. Stated errors that are too small usually omit errors common to
+# a run: then neighbours are independent with 10 %. A correlation of 0.5 is hardly visible in 13
+# residuals, whose slow variation the fit removes, but increases the error 1.6 times: a higher
+# prior of independence would dominate. Values were chosen on simulated curves of 13 speeds for
+# 95 % coverage with independent and with correlated errors of the stated size
 # (tests/coverage/shear_stress_coverage.py).
 _INDEPENDENCE_PRIORS = (0.5, 2.0), (0.1, 8.0)
 
 
 class ResidualError(NamedTuple):
-    """Error of a fit's first parameter, with correlated residuals taken into account.
+    """Standard error of the first parameter of a fit with correlated residuals.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def residual_error(
     """
     scaled, jac = residual / error, jacobian / error[:, None]
     size = np.linalg.norm(jac, axis=0)
-    jac = jac / size  # for a well conditioned matrix
+    jac = jac / size  # scaled columns give a well conditioned matrix
     apart = np.abs(place[:, None] - place)
     freedom = residual.size - jac.shape[1]
     growth = _GROWTH_GRID if known else np.concatenate([1 / _GROWTH_GRID[:0:-1], _GROWTH_GRID])
@@ -120,7 +120,7 @@ def residual_error(
 
 
 def _prior(growth: np.ndarray, known: bool) -> np.ndarray:
-    """Return the prior weight of each correlation and growth (correlation, growth)."""
+    """Return the prior probability of each correlation and error growth (correlation, growth)."""
     by_correlation = []
     for independent, power in _INDEPENDENCE_PRIORS:
         some = np.where(_CORRELATION_GRID > 0, _CORRELATION_GRID**power, 0.0)

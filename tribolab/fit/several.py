@@ -1,4 +1,4 @@
-"""Shear stresses of several surfaces, media or loads, fitted at once."""
+"""Shear stresses of several surfaces, media or loads, fitted in one call."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _OWN = ("sliding_speed", "segment", "wavenumber", "x", "point")  # dims of one c
 
 
 class ShearStressFits(Conditions[ShearStressFit]):
-    """Fitted shear stresses: a `ShearStressFit` for each condition."""
+    """Fitted shear stresses, a `ShearStressFit` for each condition."""
 
     def to_dataset(self) -> xr.Dataset:
-        """Return all numbers of `ShearStressFit.to_dataframe` over the conditions, with units."""
+        """Return all numbers of `ShearStressFit.to_dataframe` for each condition, with units."""
         tables = np.empty(self.results.shape, dtype=object)
         about: dict[str, tuple[str, str]] = {}
         for place in np.ndindex(self.results.shape):
@@ -67,7 +67,7 @@ class ShearStressFits(Conditions[ShearStressFit]):
         return merged.reindex(order)
 
     def _repr_html_(self) -> str:
-        """Return a table of shear stress, error and fit by condition; all numbers folded away."""
+        """Return HTML with shear stress, error and fit of each condition; other numbers unfold."""
         rows = "".join(
             f"<tr><th>{labels_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} MPa</td>"
             f"<td>{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
@@ -154,7 +154,7 @@ def fit_shear_stresses(
 
 
 def _further_dims(given: Mapping[str, object]) -> dict[Hashable, Any]:
-    """Return the dims beyond those of one curve with their labels, those of the curves first."""
+    """Return dims and labels that tell conditions apart, those of the measured curves first."""
     coords: dict[Hashable, Any] = {}
     for value in given.values():
         holder = _main_variable(value)
@@ -165,7 +165,7 @@ def _further_dims(given: Mapping[str, object]) -> dict[Hashable, Any]:
 
 
 def _main_variable(value: Any) -> Any:
-    """Return the variable of a dataset whose dims are used, or the argument itself."""
+    """Return the main variable of a dataset, which has its dims, or another argument unchanged."""
     for name in ("friction_coefficient", "psd_2d"):
         if name in getattr(value, "data_vars", ()):
             return value[name]

@@ -1,4 +1,4 @@
-"""Shear stress in the real contact, from a measured Stribeck curve and the computed one."""
+"""Shear stress in the real contact area, from a measured and a computed Stribeck curve."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ from tribolab.lubrication.stribeck import with_shear_stress
 from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
-_MIN_CONTACT_AREA = 1e-19  # m2, contact area below which the bodies do not touch
-_LN_STEP = 1e-2  # of ln viscosity and ln modulus, for derivatives
+_MIN_CONTACT_AREA = 1e-19  # contact area [m2] below which the bodies do not touch
+_LN_STEP = 1e-2  # step of ln(viscosity) and ln(modulus), for derivatives
 _Computed = Callable[
     [np.ndarray], xr.Dataset
-]  # computes the curve for logarithms of the free parameters
+]  # computes a curve from the logarithms of the free parameters
 
 
 @renamed(viscosity="liquid")
@@ -52,7 +52,7 @@ def fit_shear_stress(
     settings: FitSettings | None = None,
     **options: Any,
 ) -> ShearStressFit:
-    """Fit the shear stress sigma_f of the real contact to a measured Stribeck curve.
+    """Fit the shear stress sigma_f in the real contact area to a measured Stribeck curve.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def fit_shear_stress(
     moved = _model_errors(dense, stress, speed, settings.abscissa_error, inputs, free)
     if moved.size:
         errors = errors.with_part(moved)
-        if free:  # least squares with the full covariance
+        if free:  # repeat the fit with the full covariance
             best = _fit_free(computed, best, mu[used], errors.at(used), used)
             model_curve = computed(best)
             fluid, area = _parts(model_curve)
@@ -211,7 +211,7 @@ def fit_shear_stress(
 
 
 def runs_p_value(residual: np.ndarray) -> float:
-    """Return the probability of at most so many sign runs for random order of the signs.
+    """Return the probability of at most so many sign changes if the signs are in random order.
 
     Examples
     --------
@@ -221,7 +221,7 @@ def runs_p_value(residual: np.ndarray) -> float:
     sign = residual[residual != 0] > 0
     plus, minus = int(sign.sum()), int((~sign).sum())
     if plus == 0 or minus == 0:
-        return 1.0  # a single sign contains no information on their order
+        return 1.0  # residuals of one sign have only one order
     seen = 1 + int(np.count_nonzero(sign[1:] != sign[:-1]))
     ways = 0.0
     for runs in range(2, seen + 1):
@@ -235,7 +235,7 @@ def runs_p_value(residual: np.ndarray) -> float:
 
 
 def _over_speed(measured: xr.Dataset) -> xr.Dataset:
-    """Return a measured curve sorted by speed; segments are combined to a curve first."""
+    """Return a measured curve in order of speed; segments are averaged to a curve first."""
     given = measured.get("friction_coefficient")
     if given is not None and given.dims == ("segment",):
         measured = measured_stribeck_curve([measured])
@@ -258,7 +258,7 @@ def _over_speed(measured: xr.Dataset) -> xr.Dataset:
 def _points(
     measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
-    """Return speeds, friction, errors, mask of used points, and the source of the errors."""
+    """Return speeds, friction, errors, mask of fitted points, and the source of the errors."""
     speed = measured["sliding_speed"].values.astype(float)
     mu = measured["friction_coefficient"].values.astype(float)
     if speed_range is None:
@@ -289,7 +289,7 @@ def _points(
 
 
 def _parts(curve: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return the friction of the fluid, and the factor of sigma_f."""
+    """Return the fluid friction of a curve, and the factor of sigma_f in the solid friction."""
     return curve["friction_coefficient"].values, curve["friction_per_shear_stress"].values
 
 
@@ -299,7 +299,7 @@ def _regression(mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, errors: Poi
 
 
 def _slope(curve: xr.Dataset, stress: float, speed: np.ndarray) -> np.ndarray:
-    """Return d mu/d ln v of the computed curve at speeds; viscosity acts as speed does."""
+    """Return d mu/d ln v of the computed curve at speeds, which equals d mu/d ln(viscosity)."""
     fluid, area = _parts(curve)
     place = np.log(curve["sliding_speed"].values)
     return np.interp(np.log(speed), place, np.gradient(fluid + stress * area, place))
@@ -313,7 +313,7 @@ def _model_errors(
     inputs: xr.Dataset | None,
     free: Sequence[str],
 ) -> np.ndarray:
-    """Return the changes of friction due to errors of the model inputs (part, speed)."""
+    """Return the changes of friction due to uncertain model inputs (part, speed)."""
     rows = np.zeros((0, speed.size))
     if abscissa_error > 0 and "viscosity" not in free:
         rows = np.vstack([rows, abscissa_error * _slope(curve, stress, speed)])
@@ -326,7 +326,7 @@ def _model_errors(
 def _fit_free(
     computed: _Computed, start: np.ndarray, mu: np.ndarray, errors: PointErrors, used: np.ndarray
 ) -> np.ndarray:
-    """Return the least-squares logarithms of the free parameters; sigma_f follows from each."""
+    """Return the free parameters (logarithms) by least squares; each set determines sigma_f."""
 
     def residual(extra: np.ndarray) -> np.ndarray:
         fluid, area = (part[used] for part in _parts(computed(extra)))
@@ -356,7 +356,7 @@ def _jacobian(
 
 
 def _covariance(weighted: np.ndarray, extra: np.ndarray) -> np.ndarray:
-    """Return the inverse of the normal matrix in SI, from scaled, well conditioned columns."""
+    """Return the covariance in SI, computed with scaled columns for numerical stability."""
     size = np.linalg.norm(weighted, axis=0)
     inverse = np.linalg.pinv(weighted / size)
     scale = np.append(1.0, extra) / size
@@ -370,7 +370,7 @@ def _valid_range(
     area: np.ndarray,
     errors: PointErrors,
 ) -> tuple[float, float]:
-    """Return the widest range in ln v, of neighbouring speeds, that one sigma_f describes."""
+    """Return the widest range of neighbouring speeds (in ln v) that one sigma_f describes."""
     best, widest = (np.nan, np.nan), 0.0
     for first in range(speed.size):
         for stop in range(first + limits.MIN_SPEEDS_OF_RANGE.value, speed.size + 1):

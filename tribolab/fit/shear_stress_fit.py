@@ -12,12 +12,12 @@ from scipy import special
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.fit import limits
 
-_UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of additional free parameters
+_UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # units of additional free parameters
 
 
 @dataclass(frozen=True, eq=False)
 class ShearStressFit:
-    """A fitted shear stress, its goodness of fit, and the fitted curve.
+    """Fitted shear stress, its goodness of fit, and the fitted curve.
 
     Parameters
     ----------
@@ -87,12 +87,12 @@ class ShearStressFit:
 
     @property
     def total_error(self) -> float:
-        """Standard error [Pa] from scatter and shared errors, without the spectrum's."""
+        """Standard error [Pa] due to scatter and shared errors, but not to the spectrum."""
         return float(np.hypot(self.shear_stress_error_inflated, self.common_error))
 
     @property
     def statistical_half_interval(self) -> float:
-        """Half the 95 % interval of sigma_f [Pa] for the given spectrum.
+        """Half the 95 % interval of sigma_f [Pa] if the spectrum were exact.
 
         Two parts in quadrature: that of the points, and the common error times Student's t of its
         own degrees of freedom (one for two runs, which may agree by chance).
@@ -102,7 +102,7 @@ class ShearStressFit:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Ends of the 95 % interval of sigma_f [Pa], with the error of a measured spectrum.
+        """Ends of the 95 % interval of sigma_f [Pa], with the uncertainty of a measured spectrum.
 
         Raises
         ------
@@ -124,12 +124,12 @@ class ShearStressFit:
 
     @property
     def half_interval(self) -> float:
-        """Half the 95 % interval of sigma_f [Pa], to its more distant end; see `interval`."""
+        """Distance [Pa] from sigma_f to the farther end of the 95 % interval; see `interval`."""
         return float(np.max(np.abs(np.array(self.interval) - self.shear_stress)))
 
     @property
     def interval_says(self) -> str:
-        """Contents of the 95 % interval and its quantile, in words."""
+        """Text on the contributions to the 95 % interval, and its quantile."""
         return interval_words(
             self.common_error > 0,
             self.common_freedom,
@@ -140,12 +140,12 @@ class ShearStressFit:
 
     @property
     def corrected_shear_stress(self) -> float:
-        """Shear stress [Pa] in the contact area with adhesion: sigma_f / area_enhancement."""
+        """Shear stress [Pa] in the contact area with adhesion, sigma_f / area_enhancement."""
         return self.shear_stress / self.area_enhancement
 
     @property
     def corrected_shear_stress_error(self) -> float:
-        """Standard error [Pa] of `corrected_shear_stress`, from `total_error` and the area's."""
+        """Standard error [Pa] of `corrected_shear_stress`, from `total_error` and the area."""
         return abs(self.corrected_shear_stress) * np.hypot(
             self.total_error / self.shear_stress,
             self.area_enhancement_error / self.area_enhancement,
@@ -193,7 +193,7 @@ class ShearStressFit:
         return pd.DataFrame(rows, columns=columns).set_index("name")
 
     def _repr_html_(self) -> str:
-        """Return sentences on shear stress, error and fit; everything else folded away."""
+        """Return HTML sentences on shear stress, error and fit; other numbers unfold."""
         stress, error = 1e-6 * self.shear_stress, 1e-6 * self.total_error
         without = "" if self.common_error else ", statistical only"
         if self.spectrum_scanned and self.spectrum_error is None:
@@ -213,7 +213,7 @@ class ShearStressFit:
 def interval_words(
     shared: bool, common_freedom: float, error_from: str, freedom: int, correlation: float
 ) -> str:
-    """Return a text on the quantiles and contributions of a 95 % interval of sigma_f.
+    """Return text on the contributions to a 95 % interval of sigma_f, and its quantiles.
 
     Examples
     --------

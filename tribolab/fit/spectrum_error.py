@@ -1,4 +1,4 @@
-"""Error of a fitted shear stress due to an uncertain spectrum, which repeats do not reduce."""
+"""Error of a fitted shear stress due to an uncertain spectrum, which repeats cannot reduce."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SPECTRUM = (
 
 
 def shear_stress_shift(uncertainty: xr.Dataset) -> tuple[float, float]:
-    """Return the possible errors of a fitted sigma_f, down and up, due to an uncertain spectrum.
+    """Return the possible error of a fitted sigma_f due to an uncertain spectrum, down and up.
 
     Parameters
     ----------

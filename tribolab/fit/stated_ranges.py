@@ -1,4 +1,4 @@
-"""Inputs of a mixed-lubrication model that are varied over their stated ranges."""
+"""Model inputs that are varied over ranges stated by the user."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tribolab.fit.variation import Base, Changed, Skipped, Variation
 
 @dataclass(frozen=True)
 class StatedRange:
-    """An input of the model that is varied over its stated range.
+    """Model input that is varied over its stated range.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class StatedRange:
     changed: Callable[[Base, float], Changed]
 
     def __call__(self, base: Base) -> Variation | Skipped:
-        """Vary the input over its stated range."""
+        """Return the variation of the input over its stated range."""
         ends = getattr(base, f"{self.argument}_range")
         if ends is None:
             return Skipped(self.name, f"no {self.argument}_range was given")

@@ -1,4 +1,4 @@
-"""Flow factors and contact pressure changed by their known differences from numerics."""
+"""Flow factors and contact pressure, corrected by known differences from numerical results."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from scipy.interpolate import CubicHermiteSpline
 from tribolab.contact.separation import Separation
 from tribolab.lubrication.factors import FactorTable, FlowFactors
 
-EXCESS_OF_SHEAR = 0.24  # largest excess of phi_f over direct numerics, 2 to 3.2 h_rms
-LACK_OF_PRESSURE = 0.17  # largest lack of p(u) below numerics, below the first of these u/h_rms
-_NUMERICS, _GAUSSIAN = 3.2, 5.0  # u/h_rms, end of the numerics; above, gaps are Gaussian
-_CLOSE, _APART = 0.14, 0.28  # u/h_rms
+EXCESS_OF_SHEAR = 0.24  # largest excess of phi_f over numerical results, from 2 to 3.2 h_rms
+LACK_OF_PRESSURE = 0.17  # largest lack of p(u) relative to numerical results, below _CLOSE
+_NUMERICS, _GAUSSIAN = 3.2, 5.0  # u/h_rms: end of numerical results, start of Gaussian gaps
+_CLOSE, _APART = 0.14, 0.28  # u/h_rms between which the correction of p(u) vanishes
 
 
 def factors_of_numerics(factors: FlowFactors) -> FlowFactors:
-    """Return factors with phi_f as in numerics, and those of Gaussian gaps at large separation.
+    """Return factors with phi_f of numerical results, and Gaussian gaps at large separation.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def factors_of_numerics(factors: FlowFactors) -> FlowFactors:
 
 
 def _gaussian_beyond(table: FactorTable, values: np.ndarray, height: float) -> FactorTable:
-    """Return a table with given values at small separations and the Gaussian limit at large."""
+    """Return a table with given values at small and the Gaussian limit at large separation."""
     start, end = np.log(_NUMERICS), np.log(_GAUSSIAN)
     part = ((np.log(table.u / height) - start) / (end - start)).clip(0, 1)
     part = part**2 * (3 - 2 * part)
@@ -66,7 +66,7 @@ def _gaussian_beyond(table: FactorTable, values: np.ndarray, height: float) -> F
 
 
 def pressure_of_numerics(table: Separation) -> Separation:
-    """Return p(u) raised by 17 % below 0.14 h_rms, the largest difference from numerics.
+    """Return p(u) increased by 17 % below 0.14 h_rms, the largest difference from numerics.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def pressure_of_numerics(table: Separation) -> Separation:
     separation = height * np.logaddexp(0.0, knots)
     part = ((_APART - separation / height) / (_APART - _CLOSE)).clip(0, 1)
     raised = np.log1p(LACK_OF_PRESSURE) * part**2 * (3 - 2 * part)
-    # d(u/h)/dU = 1 - exp(-u/h)
+    # derivative d(u/h)/dU = 1 - exp(-u/h)
     steeper = np.log1p(LACK_OF_PRESSURE) * 6 * part * (1 - part) / (_CLOSE - _APART)
     steeper *= -np.expm1(-separation / height)
     log_p = table._curve(knots) + raised

@@ -1,4 +1,4 @@
-"""Unknowns of a model, as a frozen object."""
+"""Unknown inputs of a model."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Range = tuple[str | float, str | float]
 
 @dataclass(frozen=True)
 class Unknowns:
-    """Uncertain inputs of the band on a computed curve, in addition to the theory.
+    """Uncertain inputs for the band of a computed curve, in addition to theory errors.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Unknowns:
     outlet: bool = True
 
     def __post_init__(self) -> None:
-        """Convert text to SI floats and raise an error for impossible values."""
+        """Convert text to SI floats and raise an error if a value is impossible."""
         if self.measured_to is not None:
             known = positive(self.measured_to, "1/m", "measured_to")
             object.__setattr__(self, "measured_to", known)
@@ -67,7 +67,7 @@ _NAMES = {field.name for field in fields(Unknowns)}
 def merge_old_options(
     unknowns: Unknowns | None, options: Mapping[str, Any]
 ) -> tuple[Unknowns, dict[str, Any]]:
-    """Return the unknowns including arguments of the last release, and all other options.
+    """Return the unknowns, including arguments of the last release, and all other arguments.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def merge_old_options(
         field = name.removesuffix("_range")
         if field in _NAMES and (name != field or field in ("shear_stress_error", "measured_to")):
             found[field] = left.pop(name)
-    if "outlet" in left:  # None means that the outlet may be vented or flooded
+    if "outlet" in left:  # None means that it is unknown whether the outlet is vented or flooded
         found["outlet"] = left["outlet"] is None
         if left["outlet"] is None:
             del left["outlet"]

@@ -1,4 +1,4 @@
-"""One unknown of a mixed-lubrication model, the ends of its range, and the varied model."""
+"""Variation of one unknown of a mixed-lubrication model between the ends of its range."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.lubrication.parameters import Outlet
 
 
 class Base(NamedTuple):
-    """The model that is varied."""
+    """Model before any variation, with the ranges of its inputs."""
 
     psd: xr.Dataset | None
     rough_body: RoughBody
@@ -22,27 +22,27 @@ class Base(NamedTuple):
     gamma: float
     measured_to: float | None  # wavenumber [1/m] above which the spectrum is extrapolated
     contact: Contact
-    load: float  # [N/m]
-    viscosity: float  # [Pa s]
+    load: float  # N/m
+    viscosity: float  # Pa s
     viscosity_range: tuple[float, float] | None  # None if unknown
     youngs_modulus_range: tuple[float, float] | None
-    inlet_length: float  # [m], infinite if not stated
+    inlet_length: float  # m, infinite if not stated
     area: AreaTheory
-    work_of_adhesion: float | None = None  # [J/m2], None if the model is without adhesion
+    work_of_adhesion: float | None = None  # J/m2, None without adhesion
     work_of_adhesion_range: tuple[float, float] | None = None
     load_range: tuple[float, float] | None = None
     radius_range: tuple[float, float] | None = None
-    outlet: str = "unknown"  # or the stated outlet
+    outlet: str = "unknown"  # "unknown", or the stated outlet
 
     @property
     def spectrum(self) -> xr.Dataset:
-        """The spectrum of a rough surface."""
-        assert self.psd is not None  # variations of roughness are made only for rough surfaces
+        """Spectrum of the surface, which must be rough."""
+        assert self.psd is not None  # only rough surfaces have variations of roughness
         return self.psd
 
 
 class Changed(TypedDict, total=False):
-    """Arguments of `stribeck_curve` that one end of a range changes."""
+    """Arguments of `stribeck_curve` that change at one end of a range."""
 
     psd: xr.Dataset
     factors: FlowFactors
@@ -60,11 +60,11 @@ class Changed(TypedDict, total=False):
 
 
 class Variation(NamedTuple):
-    """One unknown, the ends of its range, and what each end changes in `stribeck_curve`."""
+    """One unknown, the ends of its range, and the arguments that change at each end."""
 
     name: str
     reason: str
-    texts: tuple[str, str]  # of the low and the high end; empty for a missing end
+    texts: tuple[str, str]  # text of the low and the high end; empty for a missing end
     ends: tuple[Changed | None, Changed | None]
 
 

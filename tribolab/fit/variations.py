@@ -22,10 +22,10 @@ from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
 
 _LOW_PERCOLATION, _HIGH_PERCOLATION = 0.40, 0.50
-_LIQUID_RADII = 3.0  # inlet length in radii of a ball: some 30 mm
+_LIQUID_RADII = 3.0  # inlet length in ball radii: some 30 mm
 _FILM_CUTOFFS = 0.3e-9, 3e-9
 _OTHER_GAMMA = 0.5
-# Unknowns that are not varied, for all surfaces and for rough ones.
+# unknowns that are not varied: of all surfaces, and of rough ones only
 _FIXED = (
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
     ("cavitation", "the liquid ruptures at one pressure, that outside or of its vapour"),
@@ -41,7 +41,7 @@ _WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures 
 
 
 def percolation(base: Base) -> Variation:
-    """Vary the contact area at which the last flow channel closes."""
+    """Vary the contact area ratio at which the last flow channel closes."""
     ends = [_factors(base, percolation=value) for value in (_LOW_PERCOLATION, _HIGH_PERCOLATION)]
     return Variation(
         "percolation threshold",
@@ -53,7 +53,7 @@ def percolation(base: Base) -> Variation:
 
 
 def shear_cutoff(base: Base) -> Variation:
-    """Vary the gap below which fluid is not sheared as a continuum."""
+    """Vary the smallest gap in which liquid is sheared as a continuum."""
     low, high = (_factors(base, cutoff=value) for value in _FILM_CUTOFFS)
     return Variation(
         "cut-off of <1/u>",
@@ -64,7 +64,7 @@ def shear_cutoff(base: Base) -> Variation:
 
 
 def energy_factor(base: Base) -> Variation | Skipped:
-    """Vary the elastic-energy factor of the mean separation."""
+    """Vary the elastic-energy factor gamma of the mean separation."""
     if base.gamma == _OTHER_GAMMA:
         return Skipped("elastic-energy factor", f"it is {_OTHER_GAMMA:g} already")
     return Variation(
@@ -76,7 +76,7 @@ def energy_factor(base: Base) -> Variation | Skipped:
 
 
 def area_theory(base: Base) -> Variation:
-    """Use the other theory of the contact area: Persson's, or the corrected one."""
+    """Replace the theory of the contact area: Persson's by the corrected one, or vice versa."""
     plain, other = base.area == "persson", alternative_area_theory(base.area)
     return Variation(
         "theory of the contact area",
@@ -88,7 +88,7 @@ def area_theory(base: Base) -> Variation:
 
 
 def rough_body(base: Base) -> Variation:
-    """Use the other body as the rough one: phi_s changes sign."""
+    """Exchange the smooth and the rough body, which reverses the sign of phi_s."""
     other: RoughBody = "moving" if base.rough_body == "stationary" else "stationary"
     return Variation(
         "rough body",
@@ -99,7 +99,7 @@ def rough_body(base: Base) -> Variation:
 
 
 def friction_factors(base: Base) -> Variation:
-    """Switch the friction factors of Eq. (4) off, or on."""
+    """Switch the friction factors of Eq. (4) off if they are on, or on if they are off."""
     return Variation(
         "friction factors",
         "how roughness changes the shear of the liquid (φ_f, φ_fs and φ_fp in Eq. (4) of Xu et "
@@ -112,7 +112,7 @@ def friction_factors(base: Base) -> Variation:
 
 
 def flow_and_shear_factors(base: Base) -> Variation:
-    """Use factors with phi_f as in direct numerics, and of Gaussian gaps at large separation."""
+    """Replace phi_f by numerical results, and all factors by Gaussian gaps at large separation."""
     factors = flow_factors(base.spectrum, base.rough_body, gamma=base.gamma)
     return Variation(
         "flow and shear factors",
@@ -124,7 +124,7 @@ def flow_and_shear_factors(base: Base) -> Variation:
 
 
 def contact_pressure(base: Base) -> Variation:
-    """Raise the contact pressure at small separation to that of numerics."""
+    """Increase the contact pressure at small separation to that of numerical results."""
     table = separation_table(base.spectrum, base.contact.effective_modulus, base.gamma)
     return Variation(
         "contact pressure p(u)",
@@ -162,7 +162,7 @@ def inlet_length(base: Base) -> Variation | Skipped:
 
 
 def outlet(base: Base) -> Variation | Skipped:
-    """Exclude gas from the diverging gap: the liquid at the outlet then sustains tension."""
+    """Exclude gas from the outlet, so that the liquid there sustains tension."""
     if base.outlet != "unknown":
         return Skipped("outlet", "it is stated")
     return Variation(
@@ -199,7 +199,7 @@ _OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (
 
 
 def variations(base: Base) -> list[Variation | Skipped]:
-    """Return all variations of a model, and unknowns that cannot be varied with the reason."""
+    """Return all variations of a model, and unknowns that cannot be varied, with the reason."""
     rough = [] if base.psd is None else [make(base) for make in _OF_ROUGHNESS]
     if rough and base.work_of_adhesion is not None:
         rough.append(WORK_OF_ADHESION(base))
@@ -207,7 +207,7 @@ def variations(base: Base) -> list[Variation | Skipped]:
 
 
 def fixed_parameters(base: Base) -> list[Skipped]:
-    """Return the unknowns that are not varied."""
+    """Return the unknowns that are never varied."""
     fixed = {"geometry and load": _stated_text(base)}
     fixed |= dict(_FIXED if base.psd is None else _FIXED + _FIXED_IF_ROUGH)
     if base.psd is not None and base.work_of_adhesion is not None:
@@ -216,7 +216,7 @@ def fixed_parameters(base: Base) -> list[Skipped]:
 
 
 def _stated_text(base: Base) -> str:
-    """Return a text on geometry and load without a stated range."""
+    """Return text on geometry and load without a stated range."""
     stated = {
         "radius": base.radius_range is None,
         "length": True,

@@ -1,4 +1,4 @@
-"""Variations of a spectrum, one at a time: its band, its ends and its extrapolated tail."""
+"""Variations of a spectrum, one at a time: its band, its ends and its extrapolated part."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.surface.extrapolation import AS_MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 
-_ATOM_LENGTH = 0.3e-9  # m
+_ATOM_LENGTH = 0.3e-9  # size of an atom [m]
 _CUTOFF_RATIO = 10.0
 _PLATEAU_FACTOR = 2.0
 _NO_TAIL = (
@@ -22,7 +22,7 @@ _NO_TAIL = (
 
 
 def spectrum_band(base: Base) -> Variation | Skipped:
-    """Move the measured part to the ends of its band, and the extrapolated part with it."""
+    """Move the measured spectrum to the limits of its band, and the extrapolation with it."""
     psd = base.spectrum
     if "psd_2d_low" not in psd or "psd_2d_high" not in psd:
         return Skipped("spectrum band", "the spectrum has no psd_2d_low and psd_2d_high")
@@ -51,7 +51,7 @@ def spectrum_band(base: Base) -> Variation | Skipped:
 
 
 def long_waves(base: Base) -> Variation | Skipped:
-    """Omit the extrapolation to small wavenumbers, or extend it."""
+    """Remove the extrapolation to small wavenumbers, or increase it."""
     psd, name = base.spectrum, "spectrum at long waves"
     q, c = spectrum_arrays(psd)
     guessed = _origin(psd) == TO_SMALL
@@ -77,7 +77,7 @@ def long_waves(base: Base) -> Variation | Skipped:
 
 
 def hurst_exponent(base: Base) -> Variation | Skipped:
-    """Tilt the extrapolation to large wavenumbers about the last measured one."""
+    """Tilt the extrapolation to large wavenumbers about the largest measured wavenumber."""
     psd = base.spectrum
     q, c = spectrum_arrays(psd)
     last = _measured_to(base)
@@ -99,7 +99,7 @@ def hurst_exponent(base: Base) -> Variation | Skipped:
 
 
 def short_waves(base: Base) -> Variation | Skipped:
-    """End the spectrum at longer waves, or extend it to atomic size."""
+    """End the spectrum at longer waves, or extend it to the size of an atom."""
     psd, name = base.spectrum, "spectrum at short waves"
     q, c = spectrum_arrays(psd)
     last = _measured_to(base)
@@ -143,7 +143,7 @@ def _measured_to(base: Base) -> float | None:
 
 
 def _local_exponent(q: np.ndarray, c: np.ndarray) -> float:
-    """Return the Hurst exponent of the spectrum's last power law; NaN if it has none."""
+    """Return the Hurst exponent of the last power law of a spectrum; NaN if it has none."""
     rough = np.flatnonzero(c)[-2:]
     if rough.size < 2:
         return np.nan

@@ -101,7 +101,7 @@ class FlowFactors:
         return Factors(phi_p, phi_s, phi_f, phi_fs, (1 + self._sign) - self._sign * drag)
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return phi_p and the entrained separation u + h_rms phi_s [m], with slopes over u."""
+        """Return phi_p and entrained separation u + h_rms phi_s [m], with derivatives by u."""
         if self.flow is None:
             return np.ones_like(u), np.zeros_like(u), u, np.ones_like(u)
         (phi_p, part), (phi_p_slope, part_slope) = self.flow(u)
@@ -300,7 +300,7 @@ class FactorTable:
     """
 
     u: np.ndarray
-    values: np.ndarray  # (factor, u)
+    values: np.ndarray  # values at the nodes (factor, u)
     origin: float
     coefficient: np.ndarray  # factor of 1/u^2 at large u (factor)
     limit: np.ndarray  # value at large u (factor)

@@ -30,7 +30,7 @@ class Flow(NamedTuple):
     share: np.ndarray  # weights of the four surrounding cells in the film (2, 4, n + 1)
     resistance: np.ndarray  # 1/(u^3 phi_p) at the points (2, n + 1)
     entrained: np.ndarray  # entrained flux at the points (2, n + 1)
-    conductance: np.ndarray  # from centre to centre (n + 1)
+    conductance: np.ndarray  # conductance from centre to centre (n + 1)
     drive: np.ndarray  # mean entrained flux, weighted by the resistance (n + 1)
     resistance_slope: np.ndarray  # derivative by the film (2, n + 1)
     entrained_slope: np.ndarray  # derivative by the film (2, n + 1)

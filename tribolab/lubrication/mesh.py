@@ -14,7 +14,7 @@ from tribolab.lubrication.parabolas import Between, between_middles, curved_kern
 
 # Positions of dense cells: the film forms at the inlet, and is thinnest in the narrow
 # constriction at the outlet.
-_ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # position, weight, and width relative to the edge
+_ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # position, weight, and width in units of the edge
 
 
 class Mesh(NamedTuple):
@@ -67,7 +67,7 @@ def graded_mesh(
     at = at[(at >= -inlet) & (at <= outlet)]
     density = 5 / (1 + at**4) + sum(w / np.hypot(at - end, r * edge) for end, w, r in _ENDS)
     count = np.append(0, np.cumsum(np.diff(at) * (density[1:] + density[:-1]) / 2))
-    count, kept = np.unique(count, return_index=True)  # samples may coincide within rounding
+    count, kept = np.unique(count, return_index=True)  # rounding may make samples coincide
     at = at[kept]
     faces = PchipInterpolator(count, at)(np.linspace(0, count[-1], cells + 1))
     faces[[0, -1]] = -inlet, outlet

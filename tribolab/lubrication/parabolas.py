@@ -29,7 +29,7 @@ class Between(NamedTuple):
 def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
     """Return the Gauss points between the centres of cells with given widths (n)."""
     n = x.size
-    # four cells around each face; missing cells at the ends have weight 0
+    # four cells around each face; cells beyond the ends have weight 0
     cell = np.arange(-2, 2)[:, None] + np.arange(n + 1)
     exists = (cell >= 0) & (cell < n)
     cell = cell.clip(0, n - 1)
@@ -67,7 +67,7 @@ def curved_weights(x: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def curved_kernel(x: np.ndarray, width: np.ndarray) -> np.ndarray:
-    """Return the displacement at x_i by unit pressure at x_j (n, n), for E* = 1.
+    """Return the displacement at x_i due to unit pressure at x_j (n, n), for E* = 1.
 
     As `line_kernel`, but the pressure of a cell is the parabola through its centre and the
     neighbouring ones, constant in the outermost cells.

@@ -64,7 +64,7 @@ class Liquid:
     thinning: ShearThinning | None = None
 
     def __post_init__(self) -> None:
-        """Convert text to SI values and raise an error for impossible ones."""
+        """Convert text to SI values and raise an error if one is impossible."""
         set_ = object.__setattr__
         set_(self, "viscosity", positive(self.viscosity, "Pa s", "viscosity"))
         if self.extent is not None:
@@ -79,7 +79,7 @@ class Liquid:
 
     @property
     def lowest_pressure(self) -> float:
-        """Pressure [Pa] of the cavity, relative to ambient."""
+        """Lowest liquid pressure [Pa], in the cavity, relative to ambient."""
         return 0.0 if self.outlet == "vented" else self.cavity_pressure
 
 
@@ -124,7 +124,7 @@ class Interface:
     abscissa: Abscissa = "entrainment_speed"
 
     def __post_init__(self) -> None:
-        """Convert text to SI values and raise an error for impossible ones."""
+        """Convert text to SI values and raise an error if one is impossible."""
         stress = to_si(self.shear_stress, "Pa", name="shear_stress")
         object.__setattr__(self, "shear_stress", stress)
         if not 0 <= stress < np.inf:
@@ -188,7 +188,7 @@ class Solver:
     method: Method = "full"
 
     def __post_init__(self) -> None:
-        """Raise an error for impossible values."""
+        """Raise an error if a value is impossible."""
         check_area(self.area)
         _require_known("method", self.method, Method)
         if self.cells < 50:
@@ -257,7 +257,7 @@ def as_stated(value: Any) -> Any:
 
 
 def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a decorator that accepts the argument names of the last release."""
+    """Return a decorator that also accepts the argument names of the last release."""
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         @functools.wraps(function)

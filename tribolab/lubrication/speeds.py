@@ -51,11 +51,11 @@ class System(NamedTuple):
 
     @property
     def viscosity(self) -> float:
-        """Viscosity at rest [Pa s]."""
+        """Return the viscosity at rest [Pa s]."""
         return self.liquid.viscosity
 
     def film(self, force: float, speed: float) -> float:
-        """Return the expected film thickness [m] at a load [N/m] and speed [m/s]."""
+        """Return the estimated film thickness [m] at a load [N/m] and speed [m/s]."""
         if not speed:
             return 0.0
         return thinned_film(self.line, self.liquid, force, speed * abs(self.factors.slide))

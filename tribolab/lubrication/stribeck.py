@@ -1,4 +1,4 @@
-"""Computed Stribeck curves: friction over speed and load."""
+"""Computed Stribeck curves: friction coefficient over speed and load."""
 
 from __future__ import annotations
 

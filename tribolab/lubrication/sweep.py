@@ -138,8 +138,8 @@ def _solve_cushioned(
 class _Cushion(NamedTuple):
     """Auxiliary repulsion p = p_max exp(10 - 30 u/film), which separates smooth surfaces."""
 
-    highest: float  # p_max [Pa]
-    film: float  # [m]
+    highest: float  # maximum pressure p_max [Pa]
+    film: float  # film thickness [m]
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the repulsive pressure [Pa] and its slope [Pa/m] at separations [m]."""

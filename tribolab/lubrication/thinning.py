@@ -160,7 +160,7 @@ class ThinnedFactors(NamedTuple):
 
     factors: FlowFactors
     law: ShearThinning
-    sliding: float  # relative speed of the bodies [m/s]
+    sliding: float  # sliding speed [m/s]
 
     @property
     def rms_roughness(self) -> float:

@@ -1,4 +1,4 @@
-"""Viscosity of known liquids from temperature and water content."""
+"""Viscosity of known liquids as a function of temperature and water content."""
 
 from __future__ import annotations
 

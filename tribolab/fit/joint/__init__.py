@@ -1,1 +1,1 @@
-"""Joint fit of all loads of a surface: shear stress and viscosity from friction curves."""
+"""Joint fit to the friction curves at all loads: shear stress, its exponents, and viscosity."""

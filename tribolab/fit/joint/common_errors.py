@@ -1,4 +1,4 @@
-"""Effect of uncertain spectra, inputs and calibrations, common to all loads, on a joint fit."""
+"""Errors of a joint fit due to uncertain spectra, model inputs and calibrations."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.spectrum_error import SPECTRUM
 from tribolab.metrology.budget_curve import shared_parts
 
-_INPUTS = ("load", "radius", "Young's modulus")  # variations common to all surfaces
+_INPUTS = ("load", "radius", "Young's modulus")  # uncertain inputs that are common to all surfaces
 
 
 def model_covariance(
@@ -26,7 +26,7 @@ def model_covariance(
     priors: JointPriors,
     uncertainty: Mapping[int, xr.Dataset],
 ) -> np.ndarray:
-    """Return the covariance of the parameters due to uncertain spectra and inputs.
+    """Return the covariance of the fitted parameters due to uncertain spectra and model inputs.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def calibration_covariance(
     curves: Sequence[LoadCurve],
     speed_error: float = 0.0,
 ) -> np.ndarray:
-    """Return the covariance of the parameters due to the calibration shared by all curves.
+    """Return the covariance of the fitted parameters due to calibrations that curves share.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def calibration_covariance(
         mine = points.curve == number
         data = curve.measured
         if "run" in data["friction_coefficient"].dims:
-            continue  # parts are given for curves of several runs
+            continue  # such shared errors belong to the mean of the runs, not to each run
         place = np.log(data.get("measured_speed", data["sliding_speed"]).values.astype(float))
         for name, part in shared_parts(data):
             relative = part / data["friction_coefficient"].values
@@ -122,7 +122,7 @@ def calibration_covariance(
 
 
 def _over_speed(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Return d ln mu/d ln v of the points; a dry curve does not depend on the viscosity."""
+    """Return d ln mu/d ln v at the points; only lubricated friction depends on the viscosity."""
     where = model.parameters
     solid = slopes[:, where.stress] @ theta[where.speed]
     return np.asarray(slopes[:, where.viscosity] + solid)
@@ -131,7 +131,7 @@ def _over_speed(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.
 def _response(
     model: JointModel, posterior: Posterior, priors: JointPriors
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return d ln mu/d theta (point, parameter), and the parameters' response to the points."""
+    """Return d ln mu/d theta (point, parameter), and the derivatives of the fit by the points."""
     weights = posterior.weight
     tau, kappa = weights @ posterior.level, weights @ posterior.correlated
     points, where = model.points, model.parameters
@@ -153,7 +153,7 @@ def _project(
     columns: list[int],
     band: xr.Dataset,
 ) -> dict[str, np.ndarray]:
-    """Return the change of parameters that represents each variation's ends (end, parameter)."""
+    """Return the parameter changes equivalent to both ends of each variation (end, parameter)."""
     load = float(band.attrs["load_N_m"])
     offs = {
         number: abs(curve.log_load - model.log_reference(load))
@@ -171,7 +171,7 @@ def _project(
     varied = ends_of.transpose("variation", "range_end", "sliding_speed").values
     change = np.log(varied / band["friction_coefficient"].values)
     inside = (log_speed > measured.min() - 0.01) & (log_speed < measured.max() + 0.01)
-    # few, closely spaced speeds: interpolate the band between its speeds
+    # few closely spaced measured speeds: interpolate the model's band to them
     if inside.sum() < limits.MIN_SPEEDS_OF_BAND.value:
         within = (measured > log_speed[0] - 0.01) & (measured < log_speed[-1] + 0.01)
         at = np.clip(measured[within], log_speed[0], log_speed[-1])

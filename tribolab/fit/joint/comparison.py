@@ -1,4 +1,4 @@
-"""Comparison of several models of the same curves by evidence and prediction."""
+"""Comparison of several models of the same curves by evidence and by prediction."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WITHOUT_FACTORS = "no friction factors"
 
 @dataclass(frozen=True)
 class ComparedModel:
-    """One model compared with the reference.
+    """One model, compared with the reference model.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class ModelComparison:
 
 
 def usual_variants(priors: JointPriors) -> dict[str, Arguments]:
-    """Return the default models of a comparison."""
+    """Return the default set of models to compare."""
     return {
         POWER_LAW: {"priors": priors},
         CONSTANT: {"priors": replace(priors, speed_exponent=0.0, load_exponent=0.0)},
@@ -78,7 +78,7 @@ def usual_variants(priors: JointPriors) -> dict[str, Arguments]:
 
 
 def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
-    """Compare fits of the same points with the first of them.
+    """Compare fits of the same points with the first of these fits.
 
     Raises
     ------
@@ -112,14 +112,14 @@ def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
 
 
 def _free(fit: JointFit) -> int:
-    """Return the number of free parameters."""
+    """Return the number of free parameters of a fit."""
     return sum(np.isfinite(marginal.reduction) for marginal in fit.marginals)
 
 
 def _conclude(
     model: tuple[str, int], reference: tuple[str, int], evidence: float, prediction: float
 ) -> str:
-    """Return the conclusion from the more conservative of the two criteria.
+    """Return the verdict from the more conservative of evidence and prediction.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Joint fit from measured curves, contact and spectra."""
+"""Joint fit that starts from measured curves, contact and spectra."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def fit_shear_stress_jointly(
     curves: xr.Dataset | None = None,
     **model: Any,
 ) -> JointFit:
-    """Fit shear stress, its exponents of speed and load, and viscosity to all loads at once.
+    """Fit shear stress, its exponents of speed and load, and viscosity to all loads together.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Input of a joint fit: measured curves by surface and load, with their computed responses."""
+"""Input of a joint fit: measured curves by surface and load, each with its computed response."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.units.stamping import labelled
 
-# range of the computed curves beyond the measured speeds, in standard deviations of ln eta
+# computed curves extend beyond the measured speeds by this number of deviations of ln eta
 _SPREADS_BEYOND_SPEEDS = 4.0
 _SPEEDS_PER_DECADE = 8
 _OWN = ("sliding_speed", "run")
@@ -79,7 +79,7 @@ class DryFriction:
 
 
 def loads_of(measured: xr.Dataset, load: str | float | xr.DataArray) -> xr.DataArray:
-    """Return the loads [N/m] over the load dim of the measured curves, if it has one."""
+    """Return the loads [N/m] of the measured curves along their load dim, if they have one."""
     given = measured.get("friction_coefficient")
     if given is None or "sliding_speed" not in given.dims:
         raise AnalysisError(
@@ -114,7 +114,7 @@ def loads_of(measured: xr.Dataset, load: str | float | xr.DataArray) -> xr.DataA
 
 
 def surfaces_of(measured: xr.Dataset, psd: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
-    """Yield name and spectrum of every surface; "" is the name of a single surface."""
+    """Yield the name and spectrum of each surface; the name is "" if there is only one."""
     if "surface" not in measured["friction_coefficient"].dims:
         yield "", psd
         return
@@ -164,7 +164,7 @@ def curves_of_surface(
     area_enhancement: float | xr.DataArray,
     dry: DryFriction | None,
 ) -> Iterator[LoadCurve]:
-    """Yield the curves of a surface at every load, dry curves last."""
+    """Yield the measured curves of a surface at each load, dry ones last."""
     for place in range(loads.size):
         labels = {dim: place for dim in loads.dims}
         at = loads.isel(labels)
@@ -194,7 +194,7 @@ def _response(computed: xr.Dataset, at: xr.DataArray, loads: xr.DataArray) -> Re
 
 
 def _select_measured(measured: xr.Dataset, surface: str, at: xr.DataArray) -> xr.Dataset | None:
-    """Return the measured curves of a surface at a load; None if nothing was measured."""
+    """Return the measured curves of a surface at a load; None if there are none."""
     labels: Arguments = {str(dim): at[dim].item() for dim in at.coords if dim in measured.dims}
     if surface and "surface" in measured.dims:
         labels["surface"] = surface
@@ -206,7 +206,7 @@ def _select_measured(measured: xr.Dataset, surface: str, at: xr.DataArray) -> xr
 
 
 def _ratio_at(given: float | xr.DataArray, surface: str, at: xr.DataArray) -> float:
-    """Return the value for a surface and load from a number or an array, checked to be positive."""
+    """Return a positive value for a surface and load, from a number or an array."""
     if isinstance(given, xr.DataArray):
         for dim in at.coords:
             if dim in given.dims:
@@ -220,7 +220,7 @@ def _ratio_at(given: float | xr.DataArray, surface: str, at: xr.DataArray) -> fl
 
 
 def _curve_name(surface: str, at: xr.DataArray, loads: xr.DataArray) -> str:
-    """Return a curve's name: its load, and its surface if there are several."""
+    """Return the name of a curve: its load, preceded by the surface if there are several."""
     dim = loads.dims[0] if loads.dims else ""
     text = f"{number(float(at))} N/m"
     if dim == "normal_force":

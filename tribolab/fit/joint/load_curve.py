@@ -1,4 +1,4 @@
-"""Measured curves of a joint fit, and the points of all of them."""
+"""Measured curves of a joint fit, and the points of all these curves."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NO_ERROR = Cure(
 
 
 class LoadCurve(NamedTuple):
-    """Friction measured at one load, and the computed response.
+    """Measured friction at one load, and the computed response.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class LoadCurve(NamedTuple):
 
 
 class MeasuredPoints(NamedTuple):
-    """Points of all curves, the run of each, and the number of points left out."""
+    """Points of all curves, their run numbers, and the number of omitted points."""
 
     points: Points
     run: np.ndarray
@@ -91,7 +91,7 @@ def points_of(
     for number, curve in enumerate(curves):
         whole = curve.measured
         given = whole.get("friction_coefficient")
-        several = given is not None and "run" in given.dims  # other variables may have this dim
+        several = given is not None and "run" in given.dims  # other variables may have the run dim
         runs = [whole.isel(run=k) for k in range(whole.sizes["run"])] if several else [whole]
         parts += [_run_points(curve.name, run, number, place) for place, run in enumerate(runs)]
     counts = [part.speed.size for part in parts]
@@ -133,7 +133,7 @@ def points_of(
 
 
 class _Run(NamedTuple):
-    """Points of one curve, or of one of its runs; an error that is not known is NaN."""
+    """Points of one curve or of one of its runs; unknown errors are NaN."""
 
     speed: np.ndarray
     friction: np.ndarray
@@ -144,7 +144,7 @@ class _Run(NamedTuple):
 
 
 def _run_points(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
-    """Return the points of a curve that have a speed and a friction."""
+    """Return the points of a curve at which both speed and friction are known."""
     given = measured.get("friction_coefficient")
     if given is None or given.dims != ("sliding_speed",):
         raise AnalysisError(
@@ -155,7 +155,7 @@ def _run_points(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
     speeds = measured.get("measured_speed", measured["sliding_speed"]).values.astype(float)
     friction = given.values.astype(float)
     error = np.full(friction.size, np.nan)
-    for ending in ("_std", "_sem"):  # _sem is preferred
+    for ending in ("_std", "_sem"):  # _sem overwrites _std
         if f"friction_coefficient{ending}" in measured:
             values = measured[f"friction_coefficient{ending}"].values.astype(float)
             error = np.where(np.isfinite(values) & (values > 0), values, error)
@@ -167,14 +167,14 @@ def _run_points(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
 def _moderate(
     error: np.ndarray, friction: np.ndarray, repeats: np.ndarray, kept: np.ndarray
 ) -> np.ndarray:
-    """Return errors with the variances from few runs moved towards those of all points."""
+    """Return errors; those from few runs are shrunk towards the average variance of all points."""
     several = kept & np.isfinite(error) & (repeats > 1)
     if several.sum() < limits.MIN_POINTS_OF_LOAD.value:
         return error
     variance = error[several] ** 2
     columns = np.stack([friction[several] ** 2, np.ones(several.sum())], axis=1)
     usual = np.full(variance.size, variance.mean())
-    # the error of a variance from k - 1 squares is proportional to it
+    # the standard error of a variance from k - 1 squares is proportional to the variance
     for _ in range(_SCATTER_ROUNDS):
         parts, _ = nnls(columns / usual[:, None], variance / usual)
         usual = np.maximum(columns @ parts, 1e-3 * variance.mean())

@@ -1,4 +1,4 @@
-"""Fit of the curves of several loads: from measured and computed curves to the result."""
+"""Joint fit of the curves of several loads, from curves and responses to the result."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from tribolab.fit.joint.result import JointFit, Marginal
 from tribolab.units.stamping import stamp
 
 _INTERVAL_ENDS = 0.025, 0.975
-_RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # 2.5 % and 97.5 % quantiles over the scale
-_ROUNDING_OF_INTERVAL = 1e-9  # relative to the length of an interval
-_DRAWN_SPEEDS = 61  # speeds of a plotted curve
+_RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # 2.5 % and 97.5 % quantiles over the scale parameter
+_ROUNDING_OF_INTERVAL = 1e-9  # share of an interval below which a value is a rounding error
+_DRAWN_SPEEDS = 61  # number of speeds in a plotted curve
 
 
 def fit_loads(
@@ -42,7 +42,7 @@ def fit_loads(
     area_ratio_error: float | Mapping[str, float] = 0.0,
     speed_range: tuple[float, float] = (0.0, np.inf),
 ) -> JointFit:
-    """Fit shear stress, exponents and viscosity to the curves of all loads at once.
+    """Fit shear stress, its exponents and viscosity to the curves of all loads together.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def fit_loads(
         if isinstance(area_ratio_error, Mapping)
         else dict.fromkeys(surfaces, area_ratio_error)
     )
-    transfer = [  # fixed for a surface without dry curves: nothing depends on it
+    transfer = [  # 0 for a surface without dry curves, on which nothing depends
         float(np.hypot(priors.dry_over_wet, errors.get(surface, 0.0)))
         if surface in measured_dry
         else 0.0
@@ -132,7 +132,7 @@ def fit_loads(
 def _left_out(
     model: JointModel, priors: JointPriors, posterior: Posterior, curves: Sequence[LoadCurve]
 ) -> dict[str, float]:
-    """Return ln p(points of a wet curve | all others) for each, from the ratio of two evidences."""
+    """Return ln p(points of a curve | all other points) for each lubricated curve."""
     if np.unique(model.points.curve).size < 2:
         return {}
     rest = {}
@@ -146,7 +146,7 @@ def _left_out(
 def _marginals(
     parameters: Parameters, posterior: Posterior, priors: JointPriors, surfaces: Sequence[str]
 ) -> list[Marginal]:
-    """Return median, interval and prior of every parameter, logarithms converted back."""
+    """Return median, interval and prior of every parameter; logarithms are converted back."""
     middle, low, high = (posterior.quantile(p) for p in (0.5, *_INTERVAL_ENDS))
     spread = np.sqrt(np.diag(posterior.spread))
     reach = NORMAL * parameters.spread
@@ -161,7 +161,7 @@ def _marginals(
         reduction = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
         value, *ends = map(float, values)
         if abs(value) < _ROUNDING_OF_INTERVAL * (ends[1] - ends[0]):
-            value = 0.0  # except for rounding
+            value = 0.0  # a rounding error
         marginals.append(
             Marginal(name, surface, value, ends[0], ends[1], ends[2], ends[3], reduction)
         )
@@ -202,7 +202,7 @@ def _points(
     curves: Sequence[LoadCurve],
     measured: MeasuredPoints,
 ) -> xr.Dataset:
-    """Return the points with the model, and the shared part of the residuals."""
+    """Return the points with the fitted friction, and the shared error part of the residuals."""
     points = model.points
     shared = shared_by_points(points, points, priors.correlation_length)
     computed, ascribed = np.zeros(points.log_speed.size), np.zeros(points.log_speed.size)
@@ -233,7 +233,7 @@ def _points(
 
 
 def _bands(model: JointModel, posterior: Posterior, curves: Sequence[LoadCurve]) -> xr.Dataset:
-    """Return the model over speed at each load with 95 % bands: by its parameters, and by all."""
+    """Return the fitted friction over speed at each load, with 95 % bands of fit and prediction."""
     ends = model.points.log_speed.min(), model.points.log_speed.max()
     grid = np.linspace(*ends, _DRAWN_SPEEDS)
     number = np.repeat(np.arange(len(curves)), grid.size)

@@ -12,11 +12,11 @@ import numpy as np
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, Responses
 
-REFERENCE_SPEED = 1e-5  # m/s, v0: sigma_0 and n are hardly correlated for this reference
+REFERENCE_SPEED = 1e-5  # v0 [m/s], chosen so that sigma_0 and n are nearly uncorrelated
 
 
 class Points(NamedTuple):
-    """Measured points of all curves in one sequence.
+    """Measured points of all curves, one after another.
 
     Parameters
     ----------
@@ -35,13 +35,13 @@ class Points(NamedTuple):
     level: np.ndarray
 
     def without(self, left_out: np.ndarray) -> Points:
-        """Return the points without those of some curves."""
+        """Return the points without those of given curves."""
         kept = ~np.isin(self.curve, left_out)
         return Points(*(column[kept] for column in self))
 
 
 class Curve(NamedTuple):
-    """Computed response of one measured curve.
+    """Computed response that belongs to one measured curve.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Curve(NamedTuple):
 
 
 class Parameters(NamedTuple):
-    """Index of each parameter in the vector, and its prior (parameter).
+    """Positions of the parameters in the vector, with prior mean and deviation (parameter).
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class Parameters(NamedTuple):
 def parameters_of(
     surfaces: int, viscosity: float, priors: JointPriors, transfer: Sequence[float] = ()
 ) -> Parameters:
-    """Return the parameters of several surfaces with one liquid.
+    """Return the parameters of several surfaces in one liquid.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def parameters_of(
 
 @dataclass(frozen=True, eq=False)
 class JointModel:
-    """Points, computed curves, parameters, and reference load F0 [N/m].
+    """Model of a joint fit: points, computed curves, parameters, and reference load F0 [N/m].
 
     Notes
     -----
@@ -165,7 +165,7 @@ class JointModel:
         return self._design_of(self.points)
 
     def _design_of(self, points: Points) -> np.ndarray:
-        """Return the derivatives of ln of the shear stress, which is linear in the parameters."""
+        """Return the derivatives of ln(shear stress), which is linear in the parameters."""
         where, number = self.parameters, points.curve
         surface, log_load, dry = (
             np.array([getattr(curve, name) for curve in self.curves])[number]
@@ -180,19 +180,19 @@ class JointModel:
         return design
 
     def without(self, left_out: np.ndarray) -> JointModel:
-        """Return the model without some curves."""
+        """Return the model without given curves."""
         return replace(self, points=self.points.without(left_out))
 
 
 class Shared(NamedTuple):
-    """Correlations of the points' errors: common level, and neighbouring speeds of one curve."""
+    """Correlations of the points' errors: of common levels, and between neighbouring speeds."""
 
     level: np.ndarray
     near: np.ndarray
 
 
 def shared_by_points(points: Points, other: Points, length: float) -> Shared:
-    """Return correlations (point, other point) of unit levels and of unit correlated errors."""
+    """Return correlations (point, other point) for unit level errors and unit correlated errors."""
     same = points.curve[:, None] == other.curve
     apart = np.abs(points.log_speed[:, None] - other.log_speed)
     return Shared(

@@ -1,4 +1,4 @@
-"""Most probable parameters of a joint fit, for many sizes of the shared errors at once."""
+"""Most probable parameters of a joint fit, for many sizes of the shared errors together."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.model import JointModel, Shared
 
 _MAX_STEPS = 200
-_NEGLIGIBLE_LN_ODDS = 25.0  # difference of log probability
-_CONVERGED_DECREMENT = 1e-6  # in ln: a thousandth of a standard deviation
-_MAX_GAIN = 10.0  # largest possible gain of the search, relative to the expected gain of a step
-_MIN_GAIN = 0.5  # share of the expected gain below which shorter steps are tried
+_NEGLIGIBLE_LN_ODDS = 25.0  # difference of log probability from the best mode
+_CONVERGED_DECREMENT = 1e-6  # of the log probability; 1e-6 is a thousandth of a standard deviation
+_MAX_GAIN = 10.0  # assumed total gain of a search, in expected gains of the next step
+_MIN_GAIN = 0.5  # share of the expected gain below which a shorter step is tried
 # the second set is tried if none of the first is better
 _STEP_SHARES = (
     (0.5, 0.25, 0.12, 0.03),
@@ -23,7 +23,7 @@ _STEP_SHARES = (
 
 
 class PosteriorModes(NamedTuple):
-    """Most probable parameters for sizes of shared errors, their covariance, evidence (mode).
+    """Most probable parameters for each size of shared errors, with covariance and evidence.
 
     The search for a mode may be stopped early, or converge slowly: `left` is its remaining gain.
     """
@@ -37,7 +37,7 @@ class PosteriorModes(NamedTuple):
 def modes_of(
     model: JointModel, shared: Shared, sizes: np.ndarray, before: np.ndarray, start: np.ndarray
 ) -> PosteriorModes:
-    """Return the modes for sizes of shared errors (level and correlated, mode).
+    """Return the modes for given sizes of shared errors (level and correlated, mode).
 
     `before` is the log prior of each (mode). The mode of the largest sizes, which is easily found,
     is the start for all others, which are computed at once.
@@ -51,7 +51,7 @@ def modes_of(
 
 
 def _whitening(covariance: np.ndarray) -> np.ndarray:
-    """Return L^-1, with L L^T the covariance."""
+    """Return the whitening matrix L^-1, where L L^T is the covariance."""
     lower, failed = lapack.dpotrf(covariance, lower=True)
     if failed:
         raise AnalysisError("the points' covariance is singular: two of them are one")
@@ -60,20 +60,20 @@ def _whitening(covariance: np.ndarray) -> np.ndarray:
 
 
 class _State(NamedTuple):
-    """The points in units of their errors, at some parameters (mode)."""
+    """Residuals and derivatives at some parameters, in units of the errors (mode)."""
 
     theta: np.ndarray
     residual: np.ndarray  # (mode, point)
     jacobian: np.ndarray  # (mode, point, free parameter)
     off: np.ndarray  # deviation from the prior in its standard deviations (mode, free parameter)
-    size: np.ndarray  # sum of squares of both
+    size: np.ndarray  # sum of squares of residual and off
 
     def at(self, which: np.ndarray) -> _State:
-        """Return some of the modes."""
+        """Return the state of some modes."""
         return _State(*(part[which] for part in self))
 
     def put(self, which: np.ndarray, other: _State) -> None:
-        """Replace some of the modes by others."""
+        """Replace the state of some modes."""
         for mine, part in zip(self, other, strict=True):
             mine[which] = part
 
@@ -91,7 +91,7 @@ def _evaluate(model: JointModel, white: np.ndarray, theta: np.ndarray) -> _State
 def _find_modes(
     model: JointModel, white: np.ndarray, before: np.ndarray, start: np.ndarray
 ) -> PosteriorModes:
-    """Find the most probable parameters by Gauss-Newton; stop at negligible modes."""
+    """Find the most probable parameters by Gauss-Newton, stopping at modes of negligible weight."""
     where = model.parameters
     free = where.spread > 0
     scale = where.spread[free]
@@ -120,7 +120,7 @@ def _find_modes(
         if not todo.size:
             break
         stuck = _take_step(model, white, state, todo, step, left[todo])
-        left[todo[stuck]] = 0.0  # the rounding of the sums is reached
+        left[todo[stuck]] = 0.0  # rounding prevents any further gain
         todo = todo[~stuck]
     spread = np.zeros((*start.shape, start.shape[1]))
     spread[:, free[:, None] & free] = np.linalg.inv(normal).reshape(len(white), -1)
@@ -135,10 +135,10 @@ def _take_step(
     step: np.ndarray,
     expected: np.ndarray,
 ) -> np.ndarray:
-    """Move some states by a step, or its best share; return which states cannot be improved."""
+    """Move some modes by a step or a share of it; return which of them could not be improved."""
     before, white = state.at(which), white[which]
     best = _evaluate(model, white, before.theta + step)
-    # a step that gains much less than expected is too long or too short
+    # if the gain is much less than expected, the full step is too long
     short = np.flatnonzero(before.size - best.size < _MIN_GAIN * expected)
     for parts in _STEP_SHARES:
         if not short.size:

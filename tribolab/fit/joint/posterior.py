@@ -1,4 +1,4 @@
-"""Posterior of a joint fit: normal for each size of the shared errors, mixed by evidence."""
+"""Posterior of a joint fit: a normal for each size of the shared errors, weighted by evidence."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from tribolab.fit.joint.model import JointModel, shared_by_points
 from tribolab.fit.joint.modes import modes_of
 from tribolab.fit.joint.priors import JointPriors
 
-# Sizes of shared errors over the scale of their priors. Wider ones are tried if much of the weight
-# is at the end, e.g. if the model does not describe the curves.
+# Sizes of shared errors over the scale of their priors. The grid is widened if much weight is
+# at its end, e.g. if the model does not describe the curves.
 _LEVEL_GRID = np.array([0.06, 0.25, 0.5, 0.8, 1.2, 1.8, 2.6])
 _CORRELATED_GRID = np.array([0.06, 0.3, 0.6, 1.0, 1.5, 2.3])
 _MAX_WEIGHT_AT_END = 0.2
 _MAX_WIDENINGS = 5
-_MAX_DECREMENT = 1e-2  # of a mode that converges slowly
+_MAX_DECREMENT = 1e-2  # for a mode that converges slowly
 _MIN_MODE_WEIGHT = 1e-4  # weight above which a mode must have converged
 
 
 class Posterior(NamedTuple):
-    """A mixture of normal distributions of the parameters.
+    """Mixture of normal distributions of the parameters.
 
     Parameters
     ----------
@@ -44,23 +44,23 @@ class Posterior(NamedTuple):
 
     @property
     def centre(self) -> np.ndarray:
-        """Mean of the parameters (parameter)."""
+        """Posterior mean of the parameters (parameter)."""
         return self.weight @ self.mean
 
     @property
     def spread(self) -> np.ndarray:
-        """Covariance of the parameters (parameter, parameter): within and between components."""
+        """Posterior covariance of the parameters (parameter, parameter)."""
         off = self.mean - self.centre
         between = np.einsum("c,ci,cj->ij", self.weight, off, off)
         return np.einsum("c,cij->ij", self.weight, self.covariance) + between
 
     def quantile(self, probability: float) -> np.ndarray:
-        """Return the quantile of each parameter's marginal (parameter)."""
+        """Return a quantile of the marginal distribution of each parameter (parameter)."""
         deviation = np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
         return mixture_quantile(self.weight, self.mean, deviation, probability)
 
     def shared_quantile(self, which: str, probability: float) -> float:
-        """Return the quantile of "level" or "correlated", linear between the sizes of the grid."""
+        """Return a quantile of the size of "level" or "correlated" errors, by interpolation."""
         sizes = getattr(self, which)
         values, place = np.unique(sizes, return_inverse=True)
         share = np.bincount(place, self.weight)
@@ -71,7 +71,7 @@ class Posterior(NamedTuple):
 def mixture_quantile(
     weight: np.ndarray, mean: np.ndarray, deviation: np.ndarray, probability: float
 ) -> np.ndarray:
-    """Return quantiles of mixtures of normals: weight (component), the rest (component, any).
+    """Return quantiles of mixtures of normal distributions (component, ...).
 
     Examples
     --------
@@ -83,7 +83,7 @@ def mixture_quantile(
     low = (mean - reach * deviation).min(axis=0)
     high = (mean + reach * deviation).max(axis=0)
     deviation = np.maximum(deviation, 1e-300)
-    for _ in range(50):  # bisection, of all at once
+    for _ in range(50):  # bisection of all quantiles together
         middle = (low + high) / 2
         below = weight @ special.ndtr((middle - mean) / deviation) < probability
         low, high = np.where(below, middle, low), np.where(below, high, middle)
@@ -91,7 +91,7 @@ def mixture_quantile(
 
 
 def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> Posterior:
-    """Return the posterior of a model's parameters.
+    """Return the posterior of the parameters of a model.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
 
 
 def _log_prior(size: np.ndarray, scale: float) -> np.ndarray:
-    """Return ln of the Rayleigh probability between the middles of neighbouring sizes.
+    """Return ln of the Rayleigh probability of each size, between midpoints of the grid.
 
     Examples
     --------

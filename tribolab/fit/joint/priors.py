@@ -11,7 +11,7 @@ from tribolab.core.errors import AnalysisError
 
 @dataclass(frozen=True)
 class JointPriors:
-    """Priors of a joint fit: normal for the parameters, Rayleigh for the sizes of shared errors.
+    """Priors of a joint fit: normal for the parameters, Rayleigh for sizes of shared errors.
 
     Parameters
     ----------
@@ -69,8 +69,8 @@ class JointPriors:
     dry_over_wet: float = 0.3
 
     def __post_init__(self) -> None:
-        """Raise an error for values that are not standard deviations."""
-        free = ("speed_exponent", "load_exponent", "viscosity_spread")  # these may be fixed
+        """Raise an error if a value is not a standard deviation."""
+        free = ("speed_exponent", "load_exponent", "viscosity_spread")  # 0 fixes these parameters
         for name in (field.name for field in fields(self)):
             value = getattr(self, name)
             if not (np.isfinite(value) and (value > 0 or (value == 0 and name in free))):

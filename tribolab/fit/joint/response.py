@@ -1,4 +1,4 @@
-"""Computed friction at any viscosity, as a function of viscosity times speed."""
+"""Computed friction as a function of viscosity times speed, for any viscosity."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from scipy.interpolate import CubicSpline
 from tribolab.core.errors import AnalysisError
 from tribolab.fit import limits
 
-_MIN_SPACING = 0.1  # of ln(eta v): closer computed points are left out
-_KNOT_OFFSET = 1e4  # offset between the knots of successive responses, wider than any response
+_MIN_SPACING = 0.1  # smallest step of ln(eta v); closer computed points are omitted
+_KNOT_OFFSET = 1e4  # offset between the knots of successive responses; no response is wider
 
 
 class Response(NamedTuple):
-    """Friction at one load over ln(eta v), for an isoviscous liquid.
+    """Friction at one load over ln(eta v), for a liquid of constant viscosity.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Response(NamedTuple):
         return self._replace(solid=larger, rest=factor * self.rest)
 
     def at(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return f, df, k, dk at ln(eta v), derivatives over ln(eta v); extrapolated at the ends.
+        """Return fluid friction f, area k, and derivatives, as f, df, k, dk at ln(eta v).
 
         Below the lowest product the contact is as at rest; values far beyond the ends are not
         meaningful.
@@ -52,12 +52,12 @@ class Response(NamedTuple):
         fluid = np.exp(self.log_fluid(inside))
         slope = fluid * self.log_fluid(inside, 1)
         solid = self.solid(inside)
-        touch = solid > 0  # a spline may become negative where the bodies separate
+        touch = solid > 0  # where the bodies separate, the spline may become negative
         return fluid, slope, np.where(touch, solid, 0.0), np.where(touch, self.solid(inside, 1), 0)
 
 
 class Responses(NamedTuple):
-    """Several responses in one table, evaluated at once.
+    """Several responses in one table, for evaluation together.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Responses(NamedTuple):
 
     @classmethod
     def of(cls, responses: Sequence[Response]) -> Responses:
-        """Return responses combined in one table."""
+        """Return several responses combined in one table."""
         begin = [response.solid.x[:-1] for response in responses]
         moved = [_KNOT_OFFSET * number + part for number, part in enumerate(begin)]
         pieces = [np.stack([r.log_fluid.c, r.solid.c], axis=1) for r in responses]
@@ -90,7 +90,7 @@ class Responses(NamedTuple):
         )
 
     def at(self, place: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return f, df, k, dk of responses (point) at places ln(eta v) (..., point).
+        """Return f, df, k, dk of the given responses (point) at ln(eta v) (..., point).
 
         The same as `Response.at` of each.
         """
@@ -102,12 +102,12 @@ class Responses(NamedTuple):
         log_fluid, solid = np.moveaxis(((a * x + b) * x + c) * x + d, -2, 0)
         fluid_slope, solid_slope = np.moveaxis((3 * a * x + 2 * b) * x + c, -2, 0)
         fluid = np.exp(log_fluid)
-        touch = solid > 0  # a spline may become negative where the bodies separate
+        touch = solid > 0  # where the bodies separate, the spline may become negative
         return fluid, fluid * fluid_slope, np.where(touch, solid, 0.0), touch * solid_slope
 
 
 def response_of(curve: xr.Dataset, *, friction_factors: bool = True) -> Response:
-    """Return the response of a load from a computed curve.
+    """Return the response at one load from a computed friction curve.
 
     Parameters
     ----------
@@ -164,9 +164,9 @@ def response_of(curve: xr.Dataset, *, friction_factors: bool = True) -> Response
 
 
 def constant_response(solid: float) -> Response:
-    """Return the response of a contact without liquid: `solid` is its area over its load [1/Pa]."""
+    """Return the response of a dry contact: `solid` is its real area over its load [1/Pa]."""
     place = np.array([-1e3, 1e3])
-    nothing = np.full(2, -1e3)  # exp of it is zero
+    nothing = np.full(2, -1e3)  # exp(-1000) is 0
     return Response(
         CubicSpline(place, nothing), CubicSpline(place, np.full(2, solid)), -1e3, 1e3, solid
     )

@@ -1,4 +1,4 @@
-"""Result of a joint fit: marginals, correlations, and conclusions in words."""
+"""Result of a joint fit: marginals, correlations, and a verdict in words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.core.wording import many, number, percent
 from tribolab.fit import limits
 
-_NAMES = {  # by parameter: unit, and name in words
+_NAMES = {  # by parameter: its unit, and its name in words
     "shear_stress": ("Pa", "shear stress"),
     "speed_exponent": ("1", "exponent of speed"),
     "load_exponent": ("1", "exponent of load"),
@@ -24,7 +24,7 @@ _NAMES = {  # by parameter: unit, and name in words
 
 @dataclass(frozen=True)
 class Marginal:
-    """Posterior of one parameter of a joint fit.
+    """Marginal posterior distribution of one parameter of a joint fit.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Marginal:
 
     @property
     def identified(self) -> str:
-        """Return "yes", "weakly", "not identified" or "held fixed"."""
+        """Whether data determine it: "yes", "weakly", "not identified" or "held fixed"."""
         if np.isnan(self.reduction):
             return "held fixed"
         if self.reduction < limits.MIN_REDUCTION_OF_PRIOR.value:
@@ -74,7 +74,7 @@ class Marginal:
 
 @dataclass(frozen=True, eq=False)
 class JointFit:
-    """A joint fit of friction over speed at several loads.
+    """Result of a joint fit of friction over speed at several loads.
 
     Parameters
     ----------
@@ -133,11 +133,11 @@ class JointFit:
 
     @property
     def described(self) -> bool:
-        """Whether the model describes the curves: correlated error below a tenth."""
+        """Whether the model describes the curves: the correlated error is below a tenth."""
         return self.marginal("correlated").value <= limits.MAX_CORRELATED_ERROR.value
 
     def table(self) -> pd.DataFrame:
-        """Return a table of the parameters: median, 95 % interval, that of the prior, and words."""
+        """Return a table of the parameters: median, 95 % interval, prior interval, and verdict."""
         rows = [
             {
                 "parameter": marginal.name,
@@ -162,7 +162,7 @@ class JointFit:
 
     @property
     def words(self) -> list[str]:
-        """Sentences on parameters that the data do not determine, and on their correlations."""
+        """Sentences on parameters that the data do not determine, and on correlated parameters."""
         return [
             *(
                 _undetermined(marginal)
@@ -176,11 +176,11 @@ class JointFit:
 
     @property
     def _physical(self) -> tuple[Marginal, ...]:
-        """All marginals except the sizes of the shared errors, which few loads hardly determine."""
+        """Marginals of the physical parameters, without the sizes of the shared errors."""
         return self.marginals[: len(self.correlation)]
 
     def _correlated(self) -> list[str]:
-        """Return sentences on pairs of parameters that are hardly distinguishable."""
+        """Return sentences on pairs of parameters that the data hardly separate."""
         texts = []
         for i, j in np.argwhere(
             np.triu(np.abs(self.correlation), 1) > limits.MAX_CORRELATION.value
@@ -193,7 +193,7 @@ class JointFit:
         return texts
 
     def _misfit(self) -> list[str]:
-        """Return sentences on a model that does not describe the curves, and on omitted points."""
+        """Return sentences on a poor fit of the model, and on omitted points."""
         texts = []
         if not self.described:
             off = percent(self.marginal("correlated").value)
@@ -209,7 +209,7 @@ class JointFit:
         return texts
 
     def _repr_html_(self) -> str:
-        """Return a table with median and interval of every parameter, and the sentences."""
+        """Return HTML with median and interval of every parameter, and the sentences."""
         rows = "".join(
             f"<tr><th>{marginal.words}</th><td>{in_words(marginal)}</td>"
             f"<td>{marginal.identified}</td></tr>"
@@ -241,12 +241,12 @@ def in_words(marginal: Marginal) -> str:
 
 
 def _is_beyond(marginal: Marginal) -> bool:
-    """Return whether a parameter is outside the interval of its prior."""
+    """Return whether a parameter lies outside the interval of its prior."""
     return not marginal.prior_low <= marginal.value <= marginal.prior_high
 
 
 def _contradiction(marginal: Marginal) -> str:
-    """Return a sentence on a contradiction between data and prior."""
+    """Return a sentence on a conflict between data and prior of a parameter."""
     before = replace(marginal, low=marginal.prior_low, high=marginal.prior_high)
     _, _, ends = in_words(before).partition("(")
     return (

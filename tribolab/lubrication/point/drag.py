@@ -39,7 +39,7 @@ def point_friction(
 
 
 def streamer_share(problem: PointProblem, solution: PointSolution) -> np.ndarray:
-    """Return the share of each cell covered by liquid: 1 in the full film, less in the cavity.
+    """Return the share of each cell that liquid covers: 1 in the full film, less in the cavity.
 
     In the cavity the liquid is advected, div(s (v/2)(u + h phi_s)) = 0, solved upwind from the
     rupture of the film.

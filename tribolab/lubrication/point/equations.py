@@ -107,7 +107,7 @@ class PointState(NamedTuple):
     constant: float
 
     def film(self, mesh: PolarMesh) -> np.ndarray:
-        """Return the film thickness in units of g."""
+        """Return the film thickness in units of the gap scale g."""
         return np.asarray(self.constant + mesh.squared + mesh.kernel @ self.pressure)
 
 
@@ -117,7 +117,7 @@ class PointSolution(NamedTuple):
     couette: float
     state: PointState
     film: np.ndarray
-    contact: np.ndarray  # pressure carried by the solid
+    contact: np.ndarray  # pressure carried by the solid contact
     fluid: np.ndarray
     dry: np.ndarray  # mask of the cells in the cavity
     flux: np.ndarray  # flux through the faces
