@@ -132,14 +132,23 @@ def coarse_shift(
 def _sums_by_lag(
     sums: list[Array], classes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], list[Array], Iterator[tuple[Array, Array]]]:
-    """Return shifts [cells], sums of samples (lag), number and sum by class of a second grid."""
+    """Return shifts [cells], sums of samples (lag), number and sum by class of a second grid.
+
+    Only shifts with enough overlap are searched.
+    """
     wide, cells = len(classes), len(sums[0])
     lags = np.arange(-wide, cells)
     ends = np.flatnonzero(np.diff(classes, prepend=-1, append=-1))
     piled = [np.concatenate([np.zeros(wide + 1), np.cumsum(s)]) for s in sums]
     piled = [np.concatenate([p, np.full(wide, p[-1])]) for p in piled]
 
+    number = piled[0][wide : wide + len(lags)] - piled[0][: len(lags)]
+    enough = np.flatnonzero(number >= limits.MIN_OVERLAP.value * number.max())
+    begin = max(int(enough[0]) - 1, 0)  # with one lag too few on each side
+    lags = lags[begin : int(enough[-1]) + 2]
+
     def sum_below(p: Array, first: int, last: int) -> Array:
+        p = p[begin:]
         return p[last : last + len(lags)] - p[first : first + len(lags)]
 
     whole = [sum_below(p, 0, wide) for p in piled]
@@ -193,19 +202,21 @@ class Classes:
             float(np.percentile(np.diff(time), 5)) for time in (force_time, motion_time)
         )
 
-    def _parts(self, shift: float) -> tuple[Array, Array, Array]:
-        """Return positions of the class changes among the samples, and number and sum by class."""
-        at = np.interp(self._moments + shift, self._time, self._edges[:-1] + 0.5)
-        number = np.bincount(self._classes, weights=np.diff(at))
-        total = np.bincount(self._classes, np.diff(np.interp(at, self._edges, self._sum)))
-        return at, np.asarray(number, dtype=float), np.asarray(total, dtype=float)
+    def _parts(self, shifts: Array) -> tuple[Array, Array, Array]:
+        """Return positions of the changes (shift, change), number and sum by class (shift, class).
 
-    def explained(self, shift: float) -> float:
-        """Return the explained sum of squares, for shifts with nearly equal overlap."""
-        return float(_explained(*(part[None] for part in self._parts(shift)[1:]))[0])
+        Positions are counted in samples.
+        """
+        at = np.interp(self._moments + shifts[:, None], self._time, self._edges[:-1] + 0.5)
+        total = self._by_class(np.diff(np.interp(at, self._edges, self._sum)))
+        return at, self._by_class(np.diff(at)), total
+
+    def explained(self, shifts: Array) -> Array:
+        """Return the explained sums of squares (shift), for shifts with nearly equal overlap."""
+        return _explained(*self._parts(shifts)[1:])
 
     def _residual(self, shift: float) -> Array:
-        at, number, total = self._parts(shift)
+        at, number, total = (part[0] for part in self._parts(np.array([shift])))
         means = total / np.maximum(number, 1e-9)
         places = np.clip(np.round(at).astype(np.int64), 0, len(self._force))
         inside = self._force[places[0] : places[-1]]
@@ -217,9 +228,7 @@ class Classes:
 
     def ratios(self, shifts: Array) -> Array:
         """Return the explained share of the variance at each of several shifts."""
-        at = np.interp(self._moments + shifts[:, None], self._time, self._edges[:-1] + 0.5)
-        number = self._by_class(np.diff(at))
-        total = self._by_class(np.diff(np.interp(at, self._edges, self._sum)))
+        at, number, total = self._parts(shifts)
         squares = np.diff(np.interp(at[:, [0, -1]], self._edges, self._square))[:, 0]
         whole = squares - total.sum(axis=1) ** 2 / np.maximum(at[:, -1] - at[:, 0], 1e-9)
         return _explained(number, total) / np.maximum(whole, 1e-12)
@@ -247,12 +256,11 @@ class Classes:
         if variance == 0.0:
             return 0.5 * self.period
         allowed = 4.0 * variance * _correlation_length(residual)
-        top = self.explained(shift)
         step = 0.5 * self.period
         while step < 1e6 * self.period:
-            fall = top - max(self.explained(shift - step), self.explained(shift + step))
-            if fall > allowed:
-                return step
+            below, top, above = self.explained(shift + step * np.array([-1.0, 0.0, 1.0]))
+            if top - max(below, above) > allowed:
+                break
             step *= 1.25
         return step
 

@@ -22,7 +22,8 @@ from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
 _COMPARED_PART = 0.05  # share of a stroke's length that is used, with equal length before it
-_STICK_DISTANCES = 1e-6 * 2.0 ** np.arange(17)  # d, in units of the stroke length
+_STICK_DISTANCES = 17  # number of distances d, each twice the one before
+_LONGEST_STICK = 1e-6 * 2.0 ** (_STICK_DISTANCES - 1)  # d, in units of the stroke length
 _SEARCHED_TIME = 0.3  # share of the duration of fast strokes (or rests) that is searched
 _MAX_SAMPLES = 5000  # most samples of one start; slower ones are not informative
 
@@ -149,11 +150,11 @@ def _misfit(onsets: list[Onset], shifts: Array) -> Array:
         n, force = len(onset.force), onset.force - onset.force.mean()
         square = float(force @ force)
         drift = np.stack([force, np.ones(n)], axis=1)
-        for d in _STICK_DISTANCES * onset.length:
-            rise = way * (-1.0 / d)
-            np.expm1(rise, out=rise)
+        rise = np.exp(way * (-1.0 / (_LONGEST_STICK * onset.length)))
+        for _ in range(_STICK_DISTANCES):
             explained, whole = (rise @ drift).T
             norm = np.maximum(np.einsum("sn,sn->s", rise, rise) - whole**2 / n, 1e-12)
             left = np.minimum(left, square - explained**2 / norm)
+            np.square(rise, out=rise)  # half the distance
         total += 0.5 * n * np.log(np.maximum(left, 1e-9 * square + 1e-30))
     return total

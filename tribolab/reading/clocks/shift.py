@@ -9,7 +9,8 @@ Several methods determine it, each with its own error:
         by the starts of fast strokes (`tribolab.reading.clocks.onset`);
     motion
         one fit of the force by distance, speed and acceleration, with slack or sticking before
-        the motion (`tribolab.reading.clocks.joint`).
+        the motion (`tribolab.reading.clocks.joint`): slow, and only made unless the starts of all
+        strokes and those of the fast ones agree.
 
 Effects that no method can separate (sticking, slack) are in the uncertainty. The shift is refused
 if methods contradict each other, none is precise, or repeated motion fits equally at another shift.
@@ -30,7 +31,6 @@ from tribolab.reading.clocks.agreement import (
     combine,
     confirmed,
     consistent,
-    contradicted,
     starts_agree,
     widened,
 )
@@ -84,7 +84,8 @@ def estimate_clock_shift(
             search = _Search(force_time, force, motion_time, velocity)
             search.search_by_classes(expected, dated)
             search.search_by_starts()
-            search.search_by_motion()
+            if not search.twice:
+                search.search_by_motion()
             return search.combined()
     except _UndeterminedError:
         return None
@@ -112,6 +113,7 @@ class _Search:
         self.fit = Classes(self.force_time, self.force, motion_time, self.classes)
         # strokes of very different speeds are not interchangeable
         self.wide = _has_different_speeds(self.motion, self.way)
+        self.stroke, self.sharp_fit = self.basis.stroke, False
         self.ways: dict[str, Estimate] = {}
 
     def search_by_classes(self, expected: float, dated: bool) -> None:
@@ -228,7 +230,6 @@ class _Search:
         )
         agrees = limits.MAX_UNEXPLAINED_OF_AGREEMENT.value
         _require(not self.weak or (joint is not None and joint.unexplained <= agrees))
-        self.sharp_fit = False
         if joint is None:
             return
         rate = estimate.rate_uncertainty if estimate.rate else limits.CLOCK_RATE_ERROR.value
@@ -275,7 +276,7 @@ class _Search:
         starts, motion, classes = ways.get("starts"), ways.get("motion"), self.first
         sharp = limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
         known = starts is not None and self.estimate.uncertainty < sharp
-        if self.twice and contradicted(ways, stroke):
+        if self.twice:
             other = self.onsets if self.estimate is self.starts else self.starts
             either = widened(ways["starts"], Estimate(*other[:2]))
             return either, limits.MIN_ERROR_OF_SHIFT.value
@@ -322,7 +323,7 @@ def _refined(fit: Classes, shift: float, around: float) -> float:
     """Return the shift near a coarse one at which the classes explain most."""
     while around > 0.2 * fit.period:
         shifts = shift + around * np.linspace(-1.0, 1.0, 33)
-        shift = float(shifts[np.argmax([fit.explained(s) for s in shifts])])
+        shift = float(shifts[np.argmax(fit.explained(shifts))])
         around /= 8.0
     return shift
 

@@ -277,9 +277,10 @@ def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Star
     for _ in range(50):
         apart = (shifts - design @ solution) / errors
         weight = errors**-2.0 / (1.0 + (apart / 2.0) ** 2)
-        solution = np.linalg.solve(
-            design.T @ (weight[:, None] * design) + prior, design.T @ (weight * shifts)
-        )
+        before, weighted = solution, weight[:, None] * design
+        solution = np.linalg.solve(design.T @ weighted + prior, weighted.T @ shifts)
+        if abs(design @ (solution - before)).max() < 1e-9 * errors.min():
+            break
     apart = (shifts - design @ solution) / errors
     squares = float((errors**2 * weight) @ apart**2)
     scatter = max(1.0, squares / max(len(shifts) - 1, 1))
