@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
 from campaigns import simulated
 
 from tribolab.app.demo import run_demo
@@ -26,14 +25,14 @@ def true_segments():
 
 def found_segments(start, stop, direction, mu, sem=0.01):
     data = {
-        "start": start,
-        "stop": stop,
+        "start_s": start,
+        "stop_s": stop,
         "direction": direction,
-        "sliding_speed": [1e-3] * len(start),
+        "sliding_speed_m_s": [1e-3] * len(start),
         "friction_coefficient": mu,
         "friction_coefficient_sem": [sem] * len(start),
     }
-    return xr.Dataset({name: ("segment", np.array(value)) for name, value in data.items()})
+    return pd.DataFrame(data)
 
 
 def statuses(found, origin=0.0):
@@ -65,7 +64,7 @@ def test_a_segment_that_swallows_two_is_found_once():
 
 
 def test_a_failed_run_misses_everything():
-    assert statuses(None) == ["missed"] * 3
+    assert statuses(pd.DataFrame()) == ["missed"] * 3
 
 
 def test_shares_count_the_segments_that_were_found():

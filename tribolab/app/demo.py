@@ -47,6 +47,6 @@ def run_demo(
         if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
             simulate_campaign(folder, executor=pool, progress=progress)
         outcome = run_campaign(campaign, executor=pool, jobs=None if pool else 1, progress=progress)
-        compared = compare_with_known(outcome, folder, pool)
+    compared = compare_with_known(outcome, folder)
     write_comparison(compared)
     return outcome, compared

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,8 @@ from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.files import inputs_of, own_python
 from tribolab.campaign.settings.load import load_and_plan
-from tribolab.campaign.settings.plan import planned_runs
-from tribolab.campaign.store.catalogue import Catalogue
+from tribolab.campaign.settings.plan import PlannedRun, planned_runs
+from tribolab.campaign.store.catalogue import Catalogue, fingerprint_of
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.campaign.store.staging import resolved, staged
@@ -56,7 +56,7 @@ def run_campaign(
         Any `concurrent.futures.Executor` to work in.
     jobs
         Number of processes without executor; 1 uses this process only. By default one per
-        processor.
+        processor, or 1 if the settings of only one run changed.
     scheduler
         Address of a Dask scheduler, instead of `jobs`.
     progress
@@ -121,6 +121,8 @@ def run_campaign(
     known = unchanged(campaign, runs, place, options, verify=verify, intact=intact)
     if known is not None:
         return known
+    if executor is None and jobs is None and scheduler is None and _is_one_changed(runs, place):
+        jobs = 1  # starting processes would take longer
     with staged(place) as folder:
         given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler, ANALYSIS)
         with given as pool:
@@ -147,6 +149,13 @@ def run_campaign(
         outcome.store.close()
     foreign = tuple(Ledger.read(place).foreign())
     return outcome.read_at(place, Catalogue.of(place), foreign, damaged)
+
+
+def _is_one_changed(runs: Sequence[PlannedRun], place: Path) -> bool:
+    """Whether the settings of exactly one run, e.g. a decision on it, changed since the results."""
+    known = Catalogue.of(place).fingerprints("run")
+    changed = [run for run in runs if known.get(run.name) != fingerprint_of(run.config_sha256)]
+    return bool(known) and len(changed) == 1
 
 
 def run_here_if_lost(

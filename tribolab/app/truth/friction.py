@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.core.errors import AnalysisError
-from tribolab.reading.netcdf.netcdf import read_groups
+from tribolab.records.runs.run_record import RunRecord
 from tribolab.rig import read_truth
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _HALF = 0.5
-# columns next to the true ones, and the variables that they show
-_READ = {
-    "start_s": "start",
-    "stop_s": "stop",
-    "direction": "direction",
-    "sliding_speed_m_s": "sliding_speed",
-    "friction_coefficient": "friction_coefficient",
-    "friction_coefficient_sem": "friction_coefficient_sem",
-}
+# columns next to the true ones
+_COLUMNS = [
+    *("start_s", "stop_s", "direction", "sliding_speed_m_s"),
+    *("friction_coefficient", "friction_coefficient_sem"),
+]
 
 
 @dataclass(frozen=True)
@@ -54,19 +45,15 @@ class TruthComparison:
     within_3: float
 
 
-def compare_with_truth(
-    outcome: Outcome, folder: str | Path, executor: Executor | None = None
-) -> TruthComparison:
+def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
     """Compare a campaign's results with the truth.
 
     Parameters
     ----------
     outcome
-        Results with data files in ``outcome.folder``.
+        The campaign's results.
     folder
         The simulated campaign's folder.
-    executor
-        Executor for the runs; without one they are compared in this process.
 
     Returns
     -------
@@ -85,24 +72,20 @@ def compare_with_truth(
             raise AnalysisError(
                 f"{run.name}: {folder} does not contain the true values of this run"
             )
-    names = [run.name for run in outcome.runs]
-    files = [outcome.folder / run.data_file if run.done else None for run in outcome.runs]
-    each = executor.map if executor else map
-    tables = each(_compared_file, names, [truth.segments[name] for name in names], files)
+    tables = [
+        compare_run(
+            entry.name,
+            truth.segments[entry.name],
+            pd.DataFrame(entry.record.facts.segments),
+            entry.record.facts.time_origin_s or 0.0,
+        )
+        for entry in outcome.store.all("run", RunRecord)
+    ]
     return summary(pd.concat(tables, ignore_index=True))
 
 
-def _compared_file(name: str, true: pd.DataFrame, file: Path | None) -> pd.DataFrame:
-    """Compare a run with the truth; a run without data file has failed."""
-    if file is None:
-        return compare_run(name, true, None, 0.0)
-    only = {"friction": _READ.values()}
-    friction = read_groups(file, ["friction"], only=only)["friction"]
-    return compare_run(name, true, friction, float(friction.attrs["time_origin_s"]))
-
-
 def compare_run(
-    name: str, true: pd.DataFrame, friction: xr.Dataset | None, time_origin: float
+    name: str, true: pd.DataFrame, measured: pd.DataFrame, time_origin: float
 ) -> pd.DataFrame:
     """Match the segments of one run with the true ones.
 
@@ -113,8 +96,8 @@ def compare_run(
     true
         Columns ``start_s``, ``stop_s`` (force clock), ``sliding_speed_m_s``, ``direction`` and
         ``friction_coefficient``.
-    friction
-        Friction (segment), or None for a run that failed.
+    measured
+        Measured segments with the same columns; none for a run that failed.
     time_origin
         Raw time of the run's first sample [s].
 
@@ -124,13 +107,9 @@ def compare_run(
         One row per true segment (status found or missed), then the extra ones.
     """
     start, stop = true["start_s"].to_numpy(), true["stop_s"].to_numpy()
-    size = 0 if friction is None else friction.sizes["segment"]
-    values = {
-        column: np.full(size, np.nan)
-        if friction is None or key not in friction
-        else friction[key].values
-        for column, key in _READ.items()
-    }
+    size = len(measured)
+    known = measured.reindex(columns=_COLUMNS)
+    values = {column: known[column].to_numpy(float) for column in _COLUMNS}
     values["start_s"] = values["start_s"] + time_origin
     values["stop_s"] = values["stop_s"] + time_origin
     overlap = np.minimum.outer(stop, values["stop_s"]) - np.maximum.outer(start, values["start_s"])
@@ -154,7 +133,7 @@ def compare_run(
     )
     index = np.concatenate([np.where(hit, best, -1), extra]).astype(int)
     for column, value in values.items():
-        table[column] = np.append(value.astype(float), np.nan)[index]
+        table[column] = np.append(value, np.nan)[index]
     error = table["friction_coefficient"] - table["true_friction_coefficient"]
     table["error_in_standard_errors"] = error / table["friction_coefficient_sem"]
     return table

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,21 +41,17 @@ class DemoComparison:
     shear_stress: pd.DataFrame
 
 
-def compare_with_known(
-    outcome: Outcome, folder: Path, executor: Executor | None = None
-) -> DemoComparison:
+def compare_with_known(outcome: Outcome, folder: Path) -> DemoComparison:
     """Compare a simulated campaign's results with its truth.
 
     Parameters
     ----------
     outcome
-        Results with data files in ``outcome.folder``.
+        The campaign's results.
     folder
         The simulated campaign's folder.
-    executor
-        Executor for the runs; without one they are compared in this process.
     """
-    runs = compare_with_truth(outcome, folder, executor)
+    runs = compare_with_truth(outcome, folder)
     surfaces, stresses = compare_surfaces(outcome, folder), compare_shear_stress(outcome, folder)
     return DemoComparison(folder, runs, surfaces, stresses)
 

@@ -99,6 +99,10 @@ class Catalogue:
             return [_adapter(outcome).validate_json(small) for (small,) in rows]
         return []
 
+    def fingerprints(self, kind: str) -> dict[str, str]:
+        """Return the fingerprint of each part of a kind, by name."""
+        return dict(self._rows("SELECT name, fingerprint FROM part WHERE kind=?", (kind,)))
+
     def trace(self, kind: str, name: str) -> PageTrace | None:
         """Return the trace of a part; None if it has none."""
         query = "SELECT coarse, fine FROM part WHERE kind=? AND name=?"
@@ -276,6 +280,7 @@ class Store(Catalogue):
             )  # its checksum is known to agree; copies have new times
         else:
             same = (state.st_size, state.st_mtime_ns) == known
+        same &= state.st_mtime_ns <= time.time_ns()  # a later one could pass for a new file
         return self.previous / file if same else None
 
     def link_file(self, old: str, new: str = "") -> bool:

@@ -26,6 +26,7 @@ from tribolab.campaign.store.catalogue import CATALOGUE
 from tribolab.campaign.store.data_files import CURES
 from tribolab.campaign.store.ledger import MARKER, Ledger, other_name
 from tribolab.core.errors import ConfigError, OutputError
+from tribolab.reading.netcdf.fresh import is_locked, lock_of
 
 _RENAME_EXCHANGE = 2
 _AT_FDCWD = -100
@@ -94,7 +95,7 @@ def staged(output: str | Path) -> Iterator[Path]:
         raise OutputError(f"{output}: {_cure(error)}; what was there is untouched") from error
     finally:
         shutil.rmtree(room, ignore_errors=True)
-        _lock_of(room).unlink(missing_ok=True)
+        lock_of(room).unlink(missing_ok=True)
         lock.close()
 
 
@@ -121,7 +122,7 @@ def recover(output: str | Path) -> None:
         *_rooms(output.parent, _prefix(output)),
         *_rooms(output, _prefix(output)),
     ):
-        if room.suffix == ".lock" or _alive(room):
+        if room.suffix == ".lock" or is_locked(room):
             continue
         if room.parent == output:
             if (room / _READY).exists():
@@ -134,7 +135,7 @@ def recover(output: str | Path) -> None:
         *_rooms(output.parent, _prefix(output)),
         *_rooms(output, _prefix(output)),
     ):
-        if lock.suffix == ".lock" and not _alive(lock.with_suffix("")):
+        if lock.suffix == ".lock" and not is_locked(lock.with_suffix("")):
             lock.unlink(missing_ok=True)
 
 
@@ -148,10 +149,6 @@ def _rooms(place: Path, prefix: str) -> list[Path]:
 
 def _prefix(output: Path) -> str:
     return f".{output.name[:100]}.tribolab-"
-
-
-def _lock_of(room: Path) -> Path:
-    return room.with_name(f"{room.name}.lock")
 
 
 def _parent_of_staging(output: Path) -> Path:
@@ -173,17 +170,6 @@ def _lock_staging_folder(output: Path) -> tuple[IO[bytes], Path]:
         if Path(name).exists():  # else another process removed it before it was locked
             return lock, Path(name).with_suffix("")
         lock.close()
-
-
-def _alive(room: Path) -> bool:
-    try:
-        with _lock_of(room).open("rb") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except FileNotFoundError:
-        return False
-    except BlockingIOError:
-        return True
-    return False
 
 
 def _refuse_foreign(output: Path) -> None:

@@ -46,6 +46,16 @@ def starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) ->
     )
 
 
+def contradicted(ways: dict[str, Estimate], stroke: float) -> bool:
+    """Whether starts, confirmed by two methods, exclude the fit by the motion (stroke [s])."""
+    starts, motion = ways["starts"], ways.get("motion")
+    if motion is None or motion.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
+        return True
+    return abs(
+        motion.shift - starts.shift
+    ) > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke and not consistent(starts, motion)
+
+
 def consistent(first: Estimate | StartShift, second: Estimate) -> bool:
     """Whether two results agree within their errors."""
     error = np.hypot(first.uncertainty, second.uncertainty)

@@ -9,8 +9,8 @@ Several methods determine it, each with its own error:
         by the starts of fast strokes (`tribolab.reading.clocks.onset`);
     motion
         one fit of the force by distance, speed and acceleration, with slack or sticking before
-        the motion (`tribolab.reading.clocks.joint`): slow, and only made unless the starts of all
-        strokes and those of the fast ones agree.
+        the motion (`tribolab.reading.clocks.joint`): slow, so only made unless the starts of all
+        strokes and those of the fast ones agree within one standard error.
 
 Effects that no method can separate (sticking, slack) are in the uncertainty. The shift is refused
 if methods contradict each other, none is precise, or repeated motion fits equally at another shift.
@@ -31,6 +31,7 @@ from tribolab.reading.clocks.agreement import (
     combine,
     confirmed,
     consistent,
+    contradicted,
     starts_agree,
     widened,
 )
@@ -84,7 +85,7 @@ def estimate_clock_shift(
             search = _Search(force_time, force, motion_time, velocity)
             search.search_by_classes(expected, dated)
             search.search_by_starts()
-            if not search.twice:
+            if not search.settled:
                 search.search_by_motion()
             return search.combined()
     except _UndeterminedError:
@@ -168,6 +169,8 @@ class _Search:
         twice = self.wide and not self.weak and self.seen is not None
         twice = twice and self.onsets is not self.starts
         self.twice = twice and starts_agree(self.starts, self.onsets, self.basis.stroke)
+        apart = abs(self.onsets.shift - self.starts.shift)
+        self.settled = self.twice and apart <= self.starts.uncertainty
         _require(not self.vague or self.twice)
         # starts with a large error were searched at a wrong position
         if not self.twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
@@ -276,7 +279,7 @@ class _Search:
         starts, motion, classes = ways.get("starts"), ways.get("motion"), self.first
         sharp = limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
         known = starts is not None and self.estimate.uncertainty < sharp
-        if self.twice:
+        if self.twice and contradicted(ways, stroke):
             other = self.onsets if self.estimate is self.starts else self.starts
             either = widened(ways["starts"], Estimate(*other[:2]))
             return either, limits.MIN_ERROR_OF_SHIFT.value

@@ -16,6 +16,7 @@ import xarray as xr
 from tribolab.arrays.chunks import pieces
 from tribolab.arrays.scratch import is_long, room
 from tribolab.core.errors import ReadError, TribolabError, shown
+from tribolab.reading.netcdf.fresh import is_fresh
 from tribolab.reading.netcdf.seal import check_seal, seal, unseal
 from tribolab.reading.netcdf.storage import decoded, write_into
 from tribolab.reading.netcdf.stored import read_plain
@@ -164,8 +165,8 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
 
     Notes
     -----
-    The file is read in a child process. A file with a seal that does not match its content is
-    refused.
+    The file is read in a child process, unless the running command wrote it. A file with a seal
+    that does not match its content is refused.
 
     Examples
     --------
@@ -212,11 +213,11 @@ def read_groups(
         check_seal(path)
     wanted = {name: tuple(names) for name, names in (only or {}).items()}
     names = None if groups is None else list(groups)
-    return _read_groups(path, names, optional=optional, only=wanted, most=most)
+    read = _groups_of if is_fresh(path) else _groups_in_child
+    return read(path, names, optional=optional, only=wanted, most=most)
 
 
-@isolated("netCDF4", "h5py", "xarray")
-def _read_groups(
+def _groups_of(
     path: Path,
     groups: list[str | None] | None,
     *,
@@ -242,6 +243,9 @@ def _read_groups(
     return datasets
 
 
+_groups_in_child = isolated("netCDF4", "h5py", "xarray")(_groups_of)
+
+
 @contextlib.contextmanager
 def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
     """Open a file that contains no references to external data."""
@@ -249,7 +253,7 @@ def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
     import netCDF4
 
     with report_damage(path, "netCDF file"):
-        with _plain_name(path) as plain, netCDF4.Dataset(plain) as opened:
+        with _LIBRARY, _plain_name(path) as plain, netCDF4.Dataset(plain) as opened:
             yield opened
 
 

@@ -82,7 +82,7 @@ def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
     """Return the facts extended by those of the run itself."""
     time = np.asarray(run["time"], float)
     about = RunAttributes.from_attrs(run.attrs)
-    shift = {k: float(v) for k, v in run.attrs.items() if k in _SHIFT and not isinstance(v, str)}
+    clock = {k: float(v) for k, v in run.attrs.items() if k in _CLOCK and not isinstance(v, str)}
     return replace(
         facts,
         instrument=about.instrument,
@@ -104,8 +104,9 @@ def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
         samples=int(time.size),
         signals=tuple(sorted(str(n) for n in run.data_vars if run[n].dims == ("time",))),
         columns_not_used=tuple(filter(None, about.columns_not_used.split("; "))),
-        clock_shift_s=shift.get("clock_shift_s"),
-        clock_shift_uncertainty_s=shift.get("clock_shift_uncertainty_s"),
+        time_origin_s=clock.get("time_origin_s"),
+        clock_shift_s=clock.get("clock_shift_s"),
+        clock_shift_uncertainty_s=clock.get("clock_shift_uncertainty_s"),
         clock_shift_source=about.clock_shift_source,
         inertia=inertia_text(run.attrs),
         history=about.history,
@@ -117,7 +118,7 @@ def findings_of(run: xr.Dataset) -> list[FindingRow]:
     return RunAttributes.from_attrs(run.attrs).findings
 
 
-_SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
+_CLOCK = ("time_origin_s", "clock_shift_s", "clock_shift_uncertainty_s")
 
 
 def friction_facts(friction: xr.Dataset) -> RunFacts:

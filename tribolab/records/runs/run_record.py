@@ -162,6 +162,7 @@ class RunFacts:
     samples: Natural = 0
     signals: tuple[str, ...] = ()
     columns_not_used: tuple[str, ...] = ()
+    time_origin_s: Annotated[float | None, means("time in the file at the first sample")] = None
     clock_shift_s: float | None = None
     clock_shift_uncertainty_s: float | None = None
     clock_shift_source: str = ""
