@@ -56,6 +56,7 @@ def test_a_known_shift_is_found_to_two_samples_of_the_fastest_strokes(shift):
     estimate = estimate_clock_shift(*logs(1, shift))
     assert abs(estimate.shift - shift) < 2 * FASTEST
     assert abs(estimate.shift - shift) < 4 * estimate.uncertainty < 4 * FASTEST
+    assert "motion" in estimate.ways  # the starts are 1.9 standard errors apart
 
 
 def test_noise_as_strong_as_friction_widens_the_stated_uncertainty():

@@ -11,11 +11,14 @@ import tempfile
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
 from tribolab.campaign.store import staging
+from tribolab.campaign.store.data_files import link, write_data
 from tribolab.campaign.store.ledger import MARKER, Ledger
 from tribolab.campaign.store.staging import staged
 from tribolab.core.errors import ConfigError, OutputError
+from tribolab.reading.netcdf.fresh import is_fresh
 
 
 def write(output, text):
@@ -357,3 +360,21 @@ def test_an_unwritable_folder_is_one_clear_error():
     finally:
         folder.chmod(0o755)
         shutil.rmtree(folder)
+
+
+def test_only_a_file_that_the_running_command_wrote_is_read_without_isolation(tmp_path):
+    earlier, planted = tmp_path / "earlier.nc", tmp_path / "results" / "new" / "data" / "a.nc"
+    planted.parent.mkdir(parents=True)
+    (tmp_path / "results.lock").touch()  # not locked by anybody
+    for file in (earlier, planted):
+        write_data({None: xr.Dataset()}, file)
+    with staged(tmp_path / "made") as folder:
+        (folder / "data").mkdir()
+        written, linked, copied = (folder / "data" / f"{n}.nc" for n in ("new", "linked", "copied"))
+        write_data({None: xr.Dataset()}, written)
+        link(earlier, linked)
+        shutil.copy2(earlier, copied)  # as where links are unsupported
+        os.utime(copied, (0, 0))
+        assert [is_fresh(file) for file in (written, linked, copied)] == [True, False, False]
+    assert not is_fresh(tmp_path / "made" / "data" / "new.nc")
+    assert not is_fresh(planted)

@@ -145,6 +145,7 @@ def test_parts_stand_in_their_order_and_what_is_not_named_goes(store):
     assert [entry.name for entry in store.all("run", RunRecord)] == list("dbca")
     store.order("run", "acd")
     assert [entry.name for entry in store.all("run", RunRecord)] == list("acd")
+    assert store.fingerprints("run") == {name: name for name in "acd"}
     assert store.trace("run", "b") is None and store.trace("run", "d") == PageTrace("d", "")
 
 
