@@ -19,7 +19,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 PROJECT = HERE.parents[1]
 PAGE = PROJECT / "docs" / "benchmarks.md"
-LONG = {"bench_big_run", "bench_one_run", "bench_scale", "bench_report", "bench_figures"}
+LONG = {"bench_big_run", "bench_one_run", "bench_scale", "bench_report"}
 LONG |= {"bench_adhesion", "bench_contact", "bench_stribeck"}  # solvers, without a peer
 LIBRARIES = ("numpy", "scipy", "pandas", "xarray", "polars", "SurfaceTopography", "matplotlib")
 
