@@ -172,7 +172,3 @@ MAX_LIKELIHOOD_OF_START = Limit(
 MAX_ERROR_OF_CLOCK_RATE = Limit(
     0.3, "1", "error of the fitted rate over the one expected, if the rate is fitted", _PAIRS
 )
-MAX_SAMPLING_OF_START = Limit(
-    30.0, "1", "sampling interval at a start over the finest one, above which the start adds less "
-    "than a thousandth to the weight", _PAIRS,
-)  # fmt: skip

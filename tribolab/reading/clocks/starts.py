@@ -181,15 +181,12 @@ def shift_from_starts(
     ToldByStarts or None
         None if no start determines it.
     """
-    # the samples around a start depend on the shift, so it is searched twice
-    for width, count in ((span, 81), (0.5 * span, 161)):
+    for width in (span, 0.5 * span):  # the samples around a start depend on the shift
         starts = _starts(logs, shift)
         if not starts:
             return None
-        shifts = shift + width * np.linspace(-1.0, 1.0, count)
+        shifts = shift + width * np.linspace(-1.0, 1.0, 161)
         shift = _best_common_shift(logs, starts, shifts[allowed(shifts)])
-    finest = min(start.sampling for start in starts)
-    starts = [s for s in starts if s.sampling < limits.MAX_SAMPLING_OF_START.value * finest]
     middle = 0.5 * (logs.motion_time[0] + logs.motion_time[-1])
     since = np.array([start.time for start in starts]) - middle
     sampling = np.array([start.sampling for start in starts])
