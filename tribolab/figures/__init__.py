@@ -1,1 +1,1 @@
-"""What each figure shows, as a description that `tribolab.plot` and the page both draw."""
+"""Figures, one description per subject, drawn for publications and for the report page."""

@@ -1,4 +1,4 @@
-"""Initial range and ticks of an axis, in agreement with `assets/chart.js`."""
+"""Initial range and ticks of an axis, equal to those of `assets/chart.js`."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 from tribolab.figures.spec import Axis, Panel, Series
 
-_ROOM = 0.06  # margin at both sides, as share of the span
+_ROOM = 0.06  # margin on either side, as share of the axis range
 _EQUAL_WITHIN = 1e-5  # relative difference, or decades, below which values are equal
-_LEAST_DECADES = 0.1  # smallest range of a logarithmic axis
-_LEAST_SHARE = 0.02  # smallest range of a linear axis, as share of the values
-_BELOW = 20  # on a logarithmic axis error bars extend the range down to the value divided by this
+_LEAST_DECADES = 0.1  # smallest range of a logarithmic axis, in decades
+_LEAST_SHARE = 0.02  # smallest range of a linear axis, as share of the largest value
+_BELOW = 20  # error bars extend a logarithmic axis at most down to the value divided by this
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Scale:
     names: tuple[str, ...] = ()
 
     def place(self, value: object) -> float | None:
-        """Return the relative position of a value, from 0 at the low end to 1, or None."""
+        """Return the position of a value on the axis, from 0 (low end) to 1 (high end), or None."""
         if self.names:
             known = isinstance(value, str) and value in self.names
             return self._share(self.names.index(str(value))) if known else None
@@ -43,7 +43,7 @@ class Scale:
 
 
 def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, Scale]:
-    """Return the initial ranges of a panel: all points, lines and error bars, but not bands.
+    """Return the initial axis ranges of a panel, which contain all data except bands.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, 
 
 
 def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
-    """Return a panel whose initial ranges contain the data of several single-panel figures."""
+    """Return a panel whose initial ranges contain the data of several one-panel figures."""
     alike = panels[0][0]
     along = [x for panel, series in panels for x in _x_values(series, panel.x)]
     x = replace(alike.x, include=_ends(along, alike.x))
@@ -101,14 +101,14 @@ def _y_values(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]
 
 
 def bar_lengths(curve: Series) -> tuple[list[float], list[float]]:
-    """Return the half lengths of the error bars upward and downward; 0 without one."""
+    """Return the lengths of error bars upward and downward; 0 for points without an error."""
     above = [_known(e) for e in curve.error] if len(curve.error) else [0.0] * len(curve.y)
     below = [_known(e) for e in curve.error_below] if len(curve.error_below) else above
     return above, below
 
 
 def _known(value: object) -> float:
-    """Return the half length of an error bar; 0 if it is unknown."""
+    """Return the length of an error bar; 0 if it is unknown."""
     return float(value) if isinstance(value, int | float) and math.isfinite(value) else 0.0
 
 
@@ -132,7 +132,7 @@ def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
 
 
 def _widen(low: float, high: float, log: bool) -> tuple[float, float]:
-    """Return the ends of a range, wide enough that rounding noise does not fill it."""
+    """Return an axis range, widened if it is so narrow that it would show rounding errors."""
     largest = max(abs(low), abs(high))
     alone = high - low <= (_EQUAL_WITHIN if log else _EQUAL_WITHIN * largest)
     least = 0.6 if log else largest or 1.0
@@ -143,7 +143,7 @@ def _widen(low: float, high: float, log: bool) -> tuple[float, float]:
 
 
 def ticks(scale: Scale, most: int) -> list[tuple[float, float]]:
-    """Return the ticks of an axis of numbers: the value, and its place from 0 to 1.
+    """Return the ticks of a numeric axis: each value, and its position from 0 to 1.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Reduction of a long trace to few points without losing spikes."""
+"""Reduction of a long trace to few points that keep its spikes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tribolab.arrays.chunks import whole_blocks
 
 
 def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Reduce a trace to the smallest and the largest point of each pixel column.
+    """Return the smallest and largest point of a trace in each pixel column.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarr
 
 
 def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarray:
-    """Return the indices of the points that `envelope` keeps, in order.
+    """Return the indices of the points that `envelope` keeps, in increasing order.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
 
 
 def extremes_index(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Return the indices of the first minimum and the first maximum of each column, in order.
+    """Return the indices of the first minimum and maximum of each column, in increasing order.
 
     Parameters
     ----------
@@ -87,9 +87,9 @@ def extremes_index(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 
 def _starts(x: np.ndarray, columns: int) -> np.ndarray:
-    """Return the index of the first point of each nonempty column."""
+    """Return the index of the first point in each pixel column that contains points."""
     edges = np.arange(1, columns) / columns
-    if x[-1] > x[0]:  # shares of the two ends remain finite for any span
+    if x[-1] > x[0]:  # a weighted mean of both ends is finite for any span
         starts = np.searchsorted(x, x[0] * (1 - edges) + x[-1] * edges)
     else:
         starts = np.ceil(edges * (x.size - 1)).astype(np.int64)
@@ -108,7 +108,7 @@ def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 
 def _first_at(y: np.ndarray, level: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return the index of the first point of each column equal to its level, else of its first."""
+    """Return the first index in each column where y equals its level, else the column's first."""
     hits = np.append(np.flatnonzero(y == np.repeat(level, ends - starts)), y.size)
     first = hits[np.searchsorted(hits, starts)]
-    return np.where(first < ends, first, starts)  # NaN is unequal to everything
+    return np.where(first < ends, first, starts)  # NaN equals nothing, so the first index is used

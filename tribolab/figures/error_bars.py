@@ -1,4 +1,4 @@
-"""Error bars of friction: expanded uncertainty, or standard deviation of the reference study."""
+"""Error bars of friction: expanded uncertainty, or standard deviation as in the reference study."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from scipy import special
 from tribolab.core.errors import AnalysisError, shown
 
 ErrorBars = Literal["U95", "std"]
-COVERAGE = float(special.ndtri(0.975))  # half width of a 95 % interval in standard errors
+COVERAGE = float(special.ndtri(0.975))  # half a normal 95 % interval in standard errors
 
 
 def error_bar(data: xr.Dataset, name: str, kind: ErrorBars = "U95") -> np.ndarray:
-    """Return the half length of each error bar.
+    """Return the length of each error bar, upward and downward alike.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Several results of one kind by their labels: surfaces, runs, conditions."""
+"""Several results of one kind, labelled by surface, run or condition."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def by_label(
 
 
 def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
-    """Return the parts of a dataset along its further dims by label; itself without any.
+    """Return the parts of a dataset along its extra dims by label, or the dataset if it has none.
 
     Parameters
     ----------
@@ -74,12 +74,12 @@ def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
     return named
 
 
-# datasets by name of the surface, or one with the dim ``surface``
+# datasets by name of the surface, or one dataset with the dim ``surface``
 SurfaceOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset
 
 
 def by_surface(data: SurfaceOrSeveral) -> dict[str, xr.Dataset]:
-    """Return datasets by name of the surface, also from one with the dim ``surface``.
+    """Return datasets by name of the surface, also from one dataset with the dim ``surface``.
 
     Each surface keeps its own wavenumbers.
     """
@@ -94,7 +94,7 @@ def by_surface(data: SurfaceOrSeveral) -> dict[str, xr.Dataset]:
 
 
 def by_load(data: xr.Dataset) -> list[tuple[float | None, xr.Dataset]]:
-    """Return the parts of a result at each load with the normal force [N], None if unknown."""
+    """Return the normal force [N] and the part of a result at each load; None if it is unknown."""
     if "load" not in data.dims:
         return [(None, data)]
     separate = [data.isel(load=k) for k in range(data.sizes["load"])]

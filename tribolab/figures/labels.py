@@ -1,4 +1,4 @@
-"""Texts on figures and tables: axis labels with SI units, speeds, columns, escaped names."""
+"""Texts of figures and tables: axis labels with SI units, speeds, columns, escaped names."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _SUBSCRIPT = re.compile(r"_([A-Za-z0-9]{2,}|[A-Z0-9])")
 
 
 def symbol(name: str) -> str:
-    r"""Return the quantity's symbol as mathtext.
+    r"""Return the symbol of a quantity in mathtext.
 
     Examples
     --------
@@ -23,7 +23,7 @@ def symbol(name: str) -> str:
 
 
 def plain_symbol(name: str) -> str:
-    """Return the quantity's symbol as plain text; "" if it has an index (mathtext only).
+    """Return the symbol of a quantity as plain text; "" if it has an index, which needs mathtext.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def plain_symbol(name: str) -> str:
 
 
 def plain_unit(name: str) -> str:
-    """Return the quantity's unit as plain text, ``""`` for a pure number.
+    """Return the unit of a quantity as plain text; ``""`` for a pure number.
 
     Examples
     --------
@@ -53,7 +53,7 @@ _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def unit(name: str) -> str:
-    """Return the quantity's unit as mathtext, ``""`` for a pure number.
+    """Return the unit of a quantity in mathtext; ``""`` for a pure number.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def unit(name: str) -> str:
 
 
 def label(name: str, long_name: str | None = None) -> str:
-    """Return an axis label: long name, symbol, unit in brackets.
+    """Return an axis label: long name, symbol, and unit in brackets.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def label(name: str, long_name: str | None = None) -> str:
 
 @functools.lru_cache(maxsize=256)
 def column(name: str) -> str:
-    """Return the name of a table column: the variable with its unit.
+    """Return the name of a table column: the variable and its unit.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def _known_characters() -> frozenset[int]:
 
 
 def plain(text: object, longest: int = 40) -> str:
-    r"""Return a user's text that is safe to draw: one line without mathtext or missing glyphs.
+    r"""Return a text as one line that matplotlib can draw, without mathtext or missing glyphs.
 
     Characters missing in the font are drawn as boxes; the page shows the full name.
 

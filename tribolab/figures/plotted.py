@@ -1,4 +1,4 @@
-"""Decorator that turns a function describing a figure into one that draws it."""
+"""Decorator for functions that describe a figure: the decorated function draws it."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ _SEVERAL = """axes
 
 
 class Plot(Protocol[P]):
-    """Function of `tribolab.plot` that draws a figure; its `spec` only describes it."""
+    """Function of `tribolab.plot` that draws a figure; its `spec` returns the description only."""
 
     spec: Callable[P, FigureSpec]
     __name__: str
 
     def __call__(self, *args: Any, **kwargs: Any) -> Figure:
-        """Draw the figure."""
+        """Draw the figure with matplotlib."""
 
 
 def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
-    """Return a decorator for a function that describes a figure.
+    """Return a decorator that makes a function draw the figure that it describes.
 
     The drawing function has the parameters of the describing one, and `title`, `ax` (`axes` if
     there are several panels) and `width`.
@@ -64,7 +64,7 @@ def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
             *args: Any, title: str = "", width: float = 0.0, ax: Any = None, axes: Any = None,
             **kwargs: Any,
         ) -> Figure:  # fmt: skip
-            # imported late: a description needs no matplotlib
+            # imported late: a description does not need matplotlib
             from tribolab.figures.look.drawing import draw
 
             spec = describe(*args, **kwargs)
@@ -91,7 +91,7 @@ def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
 
 
 def _completed(text: str, ax: str) -> str:
-    """Return a docstring with the common parameters of figures added."""
+    """Return a docstring to which the parameters common to all figures are added."""
     common = _PARAMETERS.format(ax=ax)
     before, found, after = text.partition("\n\n    Notes\n")
     if not found:

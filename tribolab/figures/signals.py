@@ -1,4 +1,4 @@
-"""Signals for the figures of a run: friction, and the strokes with their distance."""
+"""Signals in the figures of a run: friction, and distance along each stroke."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from tribolab.core.errors import AnalysisError
 if TYPE_CHECKING:
     import xarray as xr
 
-# share of the load below which F_x/F_N is noise
+# share of the load below which F_x/F_N is mostly noise
 _LOADED = 0.2
 
 
-# variables that `main_signal` uses if available
+# variables that `main_signal` uses if they are recorded
 LOOKED_AT = ("friction_force", "normal_force", "friction_coefficient")
 
 
 class Signal(NamedTuple):
-    """Name of a signal, its values (time), and the removed offset in words."""
+    """Signal to draw: its name, values (time), and the removed offset in words."""
 
     name: str
     values: np.ndarray
@@ -31,7 +31,7 @@ class Signal(NamedTuple):
 
 
 def offset_of(friction: xr.Dataset | None, name: str) -> float:
-    """Return the offset that the analysis removed (median over the segments), 0 without one."""
+    """Return the offset that the analysis removed (median over the segments), or 0."""
     if friction is None or name not in friction:
         return 0.0
     values = np.asarray(friction[name], float)
@@ -41,11 +41,11 @@ def offset_of(friction: xr.Dataset | None, name: str) -> float:
 
 def _subtract_offset(data: xr.DataArray, offset: float) -> np.ndarray:
     values = np.asarray(data, float)
-    return lowered(values, offset) if offset else values  # avoid copying long records
+    return lowered(values, offset) if offset else values  # subtracting 0 would copy a long record
 
 
 def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
-    """Return the friction coefficient over time, or the force without a recorded load.
+    """Return the friction coefficient over time, or the friction force if no load was recorded.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
 
 
 def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: float) -> np.ndarray:
-    """Return the ratio of two signals without their zeros; NaN without load."""
+    """Return the ratio of two signals after subtracting their zeros; NaN where there is no load."""
     least = _LOADED * _usual_load(load, load_zero)
     ratio = room(load.size)
     for first, last in pieces(0, load.size):
@@ -105,7 +105,7 @@ def _usual_load(load: np.ndarray, zero: float) -> float:
 
 
 class Stroke(NamedTuple):
-    """One segment of a run: its samples, distance slid, and trimmed part."""
+    """One segment of a run: its samples, the distance slid, and its trimmed part."""
 
     number: int
     samples: slice
@@ -116,7 +116,7 @@ class Stroke(NamedTuple):
 
 
 def strokes_of(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
-    """Return the samples of each segment with the distance slid since its start [m].
+    """Return the samples of each segment, with the distance slid since its start [m].
 
     The distance comes from the position, else the speed, else (both unknown) it is the time [s]
     since the start. It never decreases, even if a noisy sensor does.

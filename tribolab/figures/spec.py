@@ -19,8 +19,8 @@ from tribolab.units.quantities import quantity
 Style = Literal["points", "line", "dashed", "dotted", "dashdot", "longdash", "band", "bars", "heat"]
 Width = Literal["card", "half", "whole"]
 Values = Sequence[Any] | np.ndarray
-_MAX_CARD_LABELS = 8  # most labels in the legend of a card, as in `assets/picture.js`
-_DIGITS = 6  # exceeds the resolution of screens
+_MAX_CARD_LABELS = 8  # largest number of legend entries on a card, as in `assets/picture.js`
+_DIGITS = 6  # significant digits, more than a screen can resolve
 _NOT_ON_PAGE = frozenset({"columns", "keys", "paper", "column", "across", "name", "pale"})
 _NOT_ON_PAGE |= {"thin", "numbers"}
 
@@ -63,7 +63,7 @@ class Axis:
 
 
 def axis_of(name: str, words: str = "", unit: str = "", **more: Any) -> Axis:
-    """Return the axis of a quantity: by default with its long name and in its SI unit.
+    """Return the axis of a quantity, by default with its long name and SI unit.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def axis_of(name: str, words: str = "", unit: str = "", **more: Any) -> Axis:
 
 @dataclass(frozen=True)
 class Panel:
-    """Pair of axes with a title, its relative height, and its name in `figure_data`."""
+    """Panel of a figure: two axes, a title, its relative height, and its name in `figure_data`."""
 
     x: Axis
     y: Axis
@@ -91,7 +91,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Series:
-    """One curve, band or set of points.
+    """One curve, band or set of points in a panel.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ class Series:
 
 
 class SeriesLabels(TypedDict, total=False):
-    """Common labels of several series: fields of `Series`."""
+    """Fields of `Series` that several series have in common."""
 
     surface: str
     medium: str
@@ -191,7 +191,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Key:
-    """Entry of a publication's legend that explains a style of all surfaces, in grey."""
+    """Grey entry in the legend of a publication, which explains a style common to all surfaces."""
 
     label: str
     style: Style = "line"
@@ -201,7 +201,7 @@ class Key:
 
 
 class KeyRow(NamedTuple):
-    """Row of cells in words, with labels for the choice of surface, medium and load."""
+    """Row of texts, with the surface, medium and load by which it can be selected."""
 
     cells: tuple[str, ...]
     surface: str = ""
@@ -210,7 +210,7 @@ class KeyRow(NamedTuple):
 
 
 class KeyTable(NamedTuple):
-    """Heads and rows; the first cell of each row is its name."""
+    """Table of a figure: column heads, and rows that start with their name."""
 
     heads: tuple[str, ...]
     rows: tuple[KeyRow, ...]
@@ -218,7 +218,7 @@ class KeyTable(NamedTuple):
 
 @dataclass(frozen=True)
 class FigureSpec:
-    """Figure, independent of its renderer.
+    """Figure described independently of the program that draws it.
 
     Parameters
     ----------
@@ -262,34 +262,34 @@ class FigureSpec:
 
     @property
     def loads(self) -> list[float]:
-        """Selectable loads, lowest first; empty if all are shown at once."""
+        """Selectable loads, lowest first; empty if all loads are shown at once."""
         if not self.one_load:
             return []
         return sorted({curve.load for curve in self.series if curve.load is not None})
 
     @property
     def surface(self) -> str:
-        """Common surface of all series; "" for several."""
+        """Surface that all series have in common; "" if there are several."""
         return only({curve.surface for curve in self.series})
 
     @property
     def medium(self) -> str:
-        """Common medium of all series; "" for several."""
+        """Medium that all series have in common; "" if there are several."""
         return only({curve.medium for curve in self.series})
 
 
 def only(names: set[str]) -> str:
-    """Return the only name; "" for several or none."""
+    """Return the name if there is exactly one; otherwise ""."""
     return min(names) if len(names) == 1 else ""
 
 
 def written_labels(figure: FigureSpec, labels: Collection[str]) -> int:
-    """Return the number of labels in the legend; 0 for a card with too many."""
+    """Return the number of legend entries; 0 for a card that would have too many."""
     return 0 if figure.width == "card" and len(labels) > _MAX_CARD_LABELS else len(labels)
 
 
 def legend(series: Iterable[Series]) -> dict[str, Series]:
-    """Return the series that represents each label, lines and points before bands."""
+    """Return the series drawn in the legend for each label; lines and points precede bands."""
     named: dict[str, Series] = {}
     ranks = {"line": 0, "points": 0, "bars": 0, "heat": 0, "band": 2}
     for curve in series:
@@ -302,7 +302,7 @@ def legend(series: Iterable[Series]) -> dict[str, Series]:
 
 
 def plain_data(value: Any) -> Any:
-    """Return a figure as plain data, without defaults and with rounded numbers."""
+    """Return a figure as plain data, without default values and with rounded numbers."""
     if is_dataclass(value) and not isinstance(value, type):
         values = {field.name: getattr(value, field.name) for field in fields(value)}
         usual = {field.name: field.default for field in fields(value)}
@@ -327,7 +327,7 @@ def _seen(value: float) -> float | None:
 
 
 def thinned(count: int, most: int = 400) -> np.ndarray:
-    """Return evenly spaced indices of a long smooth curve, including both ends.
+    """Return evenly spaced indices that thin out a long smooth curve, including both ends.
 
     Examples
     --------
@@ -340,7 +340,7 @@ def thinned(count: int, most: int = 400) -> np.ndarray:
 
 
 def places(names: Iterable[str]) -> dict[str, int]:
-    """Return the palette index of each name, in the order of appearance.
+    """Return the palette index of each name, in order of appearance.
 
     Examples
     --------
@@ -351,7 +351,7 @@ def places(names: Iterable[str]) -> dict[str, int]:
 
 
 def safe(text: str) -> str:
-    """Return text in a form that is safe in anchors and file names.
+    """Return a text in a form that is valid in anchors and file names.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Interactive controls for a figure in a notebook, which is saved with the notebook."""
+"""Interactive controls for a figure in a notebook; the last picture is saved with the notebook."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FINE = 2  # pixels of the picture per pixel on the screen
 
 
 def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
-    """Show a figure with a control for each parameter of the function that draws it.
+    """Return a decorator that shows a figure with a control for each parameter.
 
     The picture is an ordinary output of the cell, drawn again after each change. Unlike with
     `ipywidgets.interact`, it remains in a saved or exported notebook, with the last settings.
@@ -85,7 +85,7 @@ def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
 
 
 def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
-    """Return a widget for each parameter, at its default."""
+    """Return a widget for each parameter, set to its default."""
     # imported late: ipywidgets loads slowly
     from ipywidgets import interactive
 
@@ -95,14 +95,14 @@ def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
         control = interactive.widget_from_abbrev(given, default)
         control.description = control.description or name.replace("_", " ")
         if hasattr(control, "continuous_update"):
-            control.continuous_update = False  # draw after the control is released
+            control.continuous_update = False  # draw only when the control is released
         control.style.description_width = "initial"
         controls[name] = control
     return controls
 
 
 def _box(controls: Arguments) -> Arguments:
-    """Return the notebook output of the controls, with text for notebooks without a kernel."""
+    """Return the notebook output of the controls, and a text for notebooks without a kernel."""
     # imported late: ipywidgets loads slowly
     from ipywidgets import VBox
 

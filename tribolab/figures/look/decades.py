@@ -1,4 +1,4 @@
-"""Fast ticks for logarithmic axes: plain text for decades, one marker for minor ticks.
+"""Fast ticks of logarithmic axes: plain text for decades, one marker for all minor ticks.
 
 Matplotlib typesets every ``10^-3`` as a formula, and makes five artists of every minor tick: over
 many decades this takes most of the time of a figure.
@@ -33,7 +33,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: bool = True) -> None:
-    """Limit the numbered decades of a logarithmic axis, with `small` ticks between them.
+    """Limit the labelled decades of a logarithmic axis, with `small` minor ticks between them.
 
     Over many decades, ticks at 2 to 9 would merge and be slow to draw: then there is one per
     decade.
@@ -49,13 +49,13 @@ def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: b
 
 
 def symlog(axes: Axes, linear_below: float, low: float, high: float) -> None:
-    """Scale an ordinate logarithmically on both sides of zero, and linearly near zero."""
+    """Make an ordinate logarithmic on both sides of zero, and linear near zero."""
     first = int(np.floor(np.log10(linear_below) + 1e-9))
     largest = max(abs(low), abs(high), linear_below)
-    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # a small overshoot needs no decade
+    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # slightly larger data need no decade
     axes.set_yscale("symlog", linthresh=10.0**first, linscale=0.8)
     step = max(1, -(-(last - first) // 2))
-    # the lowest decade would overlap the zero
+    # the label of the lowest decade would overlap that of zero
     decades = 10.0 ** np.arange(last, first - (step == 1), -step)
     both = low < -(10.0**first)
     axes.yaxis.set_major_locator(FixedLocator(np.r_[-decades if both else [], 0.0, decades]))
@@ -69,7 +69,7 @@ def _signed_decade(value: float, place: int | None = None) -> str:
 
 
 def power_of_ten(value: float, place: int | None = None) -> str:
-    """Return the label of a tick: decades as powers of ten, other values as numbers.
+    """Return a tick label: decades as powers of ten, other values as plain numbers.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def power_of_ten(value: float, place: int | None = None) -> str:
 
 
 class SmallTicks(Artist):
-    """Minor ticks of an axis, drawn with only two markers: one per side of the frame.
+    """Minor ticks of an axis, drawn with two markers only: one for each side of the frame.
 
     Create it inside `paper_style()`, whose style of minor ticks it uses.
 
@@ -122,7 +122,7 @@ class SmallTicks(Artist):
         self.set_zorder(axis.get_zorder())
 
     def draw(self, renderer: RendererBase) -> None:
-        """Draw the ticks at their current positions."""
+        """Draw the minor ticks at their current positions."""
         if not self.get_visible() or not self.axis.get_visible():
             return
         low, high = sorted(self.axis.get_view_interval())

@@ -1,4 +1,4 @@
-"""Draw a figure with matplotlib: as a new figure or in given axes."""
+"""Drawing of a figure with matplotlib, as a new figure or in given axes."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ _LINES: dict[str, LineStyleType] = {
     "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.", "longdash": (0, (8, 2)),
 }  # fmt: skip
 _RAMP = "cividis"
-_MAX_WITH_SMALL_TICKS = 6  # in more panels, minor ticks would merge
-_MAX_LEGEND_ENTRY = 64  # characters of a legend entry
-_LEVELS = 0.3, 3.0  # log10 of the ratios at the ends of a map's colours, as on the page
+_MAX_WITH_SMALL_TICKS = 6  # with more panels, minor ticks would merge
+_MAX_LEGEND_ENTRY = 64  # longest legend entry in characters
+_LEVELS = 0.3, 3.0  # log10 of power over noise at the ends of a map's colour scale, as on the page
 
 
 def draw(
     spec: FigureSpec, *, title: str = "", ax: Axes | Panels | None = None, width: float = 0.0
 ) -> Figure:
-    """Draw a figure.
+    """Draw a described figure with matplotlib.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def draw(
 
 
 def plain_values(series: Series) -> Series:
-    """Return a series with lists of plain numbers, for finding limits."""
+    """Return a series with its data as lists of numbers, from which axis ranges are computed."""
     names = ("x", "y", "high", "error", "error_below", "sizes")
     numbers = {name: np.asarray(getattr(series, name)).tolist() for name in names}
     return replace(series, **numbers, columns=_columns_of(series))
@@ -124,7 +124,7 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         )
         if any(series.style == "heat" for series in mine):
             _colour_bar(axes)
-        axes.set_xlim(limits[0])  # error bars change them
+        axes.set_xlim(limits[0])  # undo the change of limits by error bars
         axes.set_ylim(limits[1])
         axes.set_xlabel(_label(panel.x) if _is_last(spec, number) else "")
         if not y.names and _is_first(spec, number):
@@ -134,19 +134,19 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
 
 
 def _is_last(spec: FigureSpec, number: int) -> bool:
-    """Whether no panel below has the same abscissa."""
+    """Return whether no panel below has the same abscissa."""
     below = spec.panels[number + max(spec.across, 1) :: max(spec.across, 1)]
     return not any(panel.x == spec.panels[number].x for panel in below)
 
 
 def _is_first(spec: FigureSpec, number: int) -> bool:
-    """Whether no panel to the left shows the same quantity."""
+    """Return whether no panel to the left shows the same quantity."""
     row = spec.panels[number - number % max(spec.across, 1) : number]
     return not any(panel.y.label == spec.panels[number].y.label for panel in row)
 
 
 def _x_range(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
-    """Return the range of a panel's abscissa, shared by panels with the same abscissa."""
+    """Return the range of a panel's abscissa, common to all panels with that abscissa."""
     own = spec.panels[number].x
     alike = [x for panel, (x, _) in zip(spec.panels, seen, strict=True) if panel.x == own]
     return replace(alike[0], low=min(x.low for x in alike), high=max(x.high for x in alike))
@@ -185,7 +185,7 @@ def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale, small: bool) -> N
 
 
 def _label_parts(axis: Any, low: float, high: float) -> None:
-    """Label 1, 2 and 5 of each decade if a logarithmic axis covers little more than one."""
+    """Label also 2 and 5 of each decade if a logarithmic axis covers little more than a decade."""
     if high - low < 1.7:
         axis.set_major_locator(_parts_locator(high - low))
         axis.set_major_formatter(FuncFormatter(_part_of_decade))
@@ -216,16 +216,16 @@ def _dates(axes: Axes) -> None:
 
 
 def _wrapped(text: str) -> str:
-    # imported late: needed for long names only
+    # imported late: only long names need it
     import textwrap
 
-    apart = str(text).replace("_", "_ ")  # allows line breaks after underscores
+    apart = str(text).replace("_", "_ ")  # a space allows a line break after an underscore
     lines = textwrap.wrap(apart, 25, max_lines=3, placeholder=" …") or [""]
     return "\n".join(plain(line.replace("_ ", "_")) for line in lines)
 
 
 def colour_of(series: Series | Mark | Key) -> str:
-    """Return the colour of a series: the palette colour in the shade of its load."""
+    """Return the colour of a series: its palette colour in the shade of its load."""
     base = PALETTE[series.colour % len(PALETTE)]
     shade = getattr(series, "shade", 0.0)
     if not shade:
@@ -315,14 +315,14 @@ def _colour_bar(axes: Axes) -> None:
 
 
 def _write_labels_above(axes: Axes, marks: Sequence[Mark], seen: Scale) -> None:
-    """Write the labels of marks above them in two rows, if there is room."""
-    width = 25.4 * axes.get_window_extent().width / whole_figure(axes).dpi  # mm
-    ends = [6.0, 0.0]  # mm occupied in each of the two rows; the first contains the panel letter
+    """Write the labels of marks above them, in two rows, where there is room."""
+    width = 25.4 * axes.get_window_extent().width / whole_figure(axes).dpi  # width of the axes, mm
+    ends = [6.0, 0.0]  # mm occupied in each of two rows; the panel letter is in the first
     for mark in marks:
         at = seen.place(mark.value + ((mark.until or mark.value) - mark.value) / 2)
         if not mark.above or at is None:
             continue
-        middle, need = at * width, len(mark.above) * 1.35 + 2.0  # mm at 7 pt
+        middle, need = at * width, len(mark.above) * 1.35 + 2.0  # width of the label in mm at 7 pt
         row = next((k for k in (0, 1) if middle - need / 2 >= ends[k]), None)
         if row is None or middle + need / 2 > width:
             continue
@@ -363,7 +363,7 @@ def _key(axes: Axes, key: Key) -> None:
 
 
 def _store(figure: Figure, spec: FigureSpec, series: Series) -> None:
-    """Store the numbers of a series for `figure_data`."""
+    """Store the numbers of a series in the figure, from where `figure_data` reads them."""
     columns, panel = series.columns or {}, spec.panels[series.panel]
     if "" in columns:
         x, y, high, error = columns[""]

@@ -1,4 +1,4 @@
-"""Drawing in the user's axes, which keep their style and content."""
+"""Drawing in the user's own axes, whose style and content are kept."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from tribolab.core.errors import AnalysisError
 
-# several axes, as returned by `plt.subplots` or as a list
+# several axes, as from `plt.subplots` or in a list
 Panels = Sequence[Axes] | NDArray[np.object_]
 
 
 def name_all(axes: Axes) -> None:
-    """Set a legend with every labelled item in the axes, each label once."""
+    """Make a legend of all labelled items in the axes, each label once."""
     handles, texts = axes.get_legend_handles_labels()
     named = dict(zip(reversed(texts), reversed(handles), strict=True))
     if named:
@@ -26,7 +26,7 @@ def name_all(axes: Axes) -> None:
 
 
 def whole_figure(part: Axes | SubFigure) -> Figure:
-    """Return the whole figure that contains axes or a subfigure."""
+    """Return the figure that contains axes or a subfigure."""
     figure = part.figure
     while isinstance(figure, SubFigure):
         figure = figure.figure
@@ -37,7 +37,7 @@ def whole_figure(part: Axes | SubFigure) -> Figure:
 
 @contextlib.contextmanager
 def guests(panels: Iterable[Axes]) -> Iterator[None]:
-    """Draw into the user's axes: extend their limits to new data without hiding old data."""
+    """Draw into the user's axes: their limits are extended to new data, old data remain visible."""
     before = [(ax, ax.has_data(), ax.get_xlim(), ax.get_ylim()) for ax in panels]
     yield
     for ax, had, old_x, old_y in before:
@@ -51,6 +51,6 @@ def guests(panels: Iterable[Axes]) -> Iterator[None]:
 def _merged_limits(
     new: tuple[float, float], old: tuple[float, float], scale: str
 ) -> tuple[float, float]:
-    """Return limits that contain both; on a logarithmic axis only positive ones."""
+    """Return limits that contain old and new ones; on a logarithmic axis only positive ones."""
     ends = [end for end in old if scale != "log" or end > 0]
     return min([new[0], *ends]), max([new[1], *ends])

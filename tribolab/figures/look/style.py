@@ -1,4 +1,4 @@
-"""Common style of all figures: sizes, fonts, colours, markers, and saving of figures."""
+"""Common style of all figures: sizes, fonts, colours, markers, and writing of files."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from matplotlib.mathtext import MathTextParser
 from matplotlib.textpath import TextToPath
 
 if TYPE_CHECKING:
-    from matplotlib.typing import RcKeyType  # not in the oldest supported matplotlib
+    from matplotlib.typing import RcKeyType  # missing in the oldest supported matplotlib
 
 SINGLE_MM = 86.0
 DOUBLE_MM = 178.0
 
 _RC: dict[RcKeyType, Any] = {
-    "font.family": "DejaVu Sans",  # part of matplotlib, so every computer draws the same
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so all computers draw the same
     "mathtext.fontset": "dejavusans",
     "font.size": 7.5,
     "axes.labelsize": 8,
     "axes.titlesize": 8,
-    "axes.titley": 1.0,  # otherwise the space above the frame is computed from its ticks
+    "axes.titley": 1.0,  # otherwise matplotlib computes the position from the ticks
     "xtick.labelsize": 7,
     "ytick.labelsize": 7,
     "legend.fontsize": 7,
@@ -65,7 +65,7 @@ _RC: dict[RcKeyType, Any] = {
     # letters as outlines look the same everywhere and need no font
     "svg.fonttype": "path",
     "svg.hashsalt": "tribolab",
-    # TrueType: journals reject matplotlib's default Type 3 fonts
+    # TrueType, because journals reject matplotlib's default Type 3 fonts
     "pdf.fonttype": 42,
     "ps.fonttype": 42,
     "path.simplify": True,
@@ -73,7 +73,7 @@ _RC: dict[RcKeyType, Any] = {
 
 
 class PaperFigure(Figure):
-    """Matplotlib figure that a notebook shows by itself.
+    """Matplotlib figure that is displayed in a notebook without pyplot.
 
     It is made without pyplot, so there is no global state and nothing to close.
     """
@@ -91,11 +91,11 @@ class PaperFigure(Figure):
         return buffer.getvalue()
 
 
-_NUMBERS = "_tribolab_numbers"  # attribute of a figure with its numbers
+_NUMBERS = "_tribolab_numbers"  # name of the attribute that stores a figure's numbers
 
 
 def keep(figure: Figure, panel: str, series: str, **columns: np.ndarray) -> None:
-    """Store the numbers drawn in a figure for `figure_data`."""
+    """Store the numbers drawn in a figure, from where `figure_data` reads them."""
     vars(figure).setdefault(_NUMBERS, []).append({"panel": panel, "series": series, **columns})
 
 
@@ -131,7 +131,7 @@ def figure_data(figure: Figure) -> pd.DataFrame:
 
 @contextlib.contextmanager
 def paper_style() -> Iterator[None]:
-    """Apply the package's style temporarily.
+    """Apply the style of this package within a context.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def paper_style() -> Iterator[None]:
     True
     """
     with mpl.rc_context():
-        # start from matplotlib's defaults instead of the user's matplotlibrc, for equal figures
+        # start from matplotlib's defaults, not the user's matplotlibrc, so that figures are equal
         defaults = {k: v for k, v in mpl.rcParamsDefault.items() if k not in _KEEP}
         mpl.rcParams.update(defaults)
         mpl.rcParams.update(_RC)
@@ -159,7 +159,7 @@ def new_figure(width_mm: float, height_mm: float) -> PaperFigure:
 
 
 def tidy(axes: Axes, letter: str = "") -> None:
-    """Add the letter of a panel."""
+    """Add the letter of a panel to its axes."""
     if letter:
         axes.annotate(
             f"({letter})",
@@ -186,14 +186,14 @@ def _rounded(match: re.Match[str]) -> str:
 
 
 def _shorten_path(match: re.Match[str]) -> str:
-    """Shorten a path: two decimals, and no `L` where SVG implies it."""
+    """Return an SVG path with two decimals, and without `L` where SVG implies it."""
     path = " ".join(_DECIMALS.sub(_rounded, match[1]).split())
-    if _POLYLINE.fullmatch(path):  # after M, pairs of numbers are lines
+    if _POLYLINE.fullmatch(path):  # after M, SVG draws lines between pairs of numbers
         path = path.replace(" L ", " ")
     return f' d="{path}"'
 
 
-_PLACE = re.compile(r' [xy]="[^"]*"|translate\([^)]*\)')  # positions, but no scales
+_PLACE = re.compile(r' [xy]="[^"]*"|translate\([^)]*\)')  # positions, but not scales
 _GROUP_ID = re.compile(r'<g id="[^"]*"')
 _SYMBOL = re.compile(r'<path id="([^"]+)"[^>]*? style="([^"]*)"')
 _USE = re.compile(r'<use xlink:href="#([^"]+)"([^>]*?) style="([^"]*)"/>')
@@ -201,7 +201,7 @@ _BARE_GROUP = re.compile(r"<g>\n(<use[^>]*/>)\n</g>")
 
 
 def _shorten_svg(text: str) -> str:
-    """Shorten an SVG: fewer decimals, no indents, ids and repeated styles."""
+    """Return an SVG with fewer decimals, and without indents, ids and repeated styles."""
     text = _DRAWN.sub(_shorten_path, _COMMENT.sub("", text))
     text = _PLACE.sub(lambda match: _DECIMALS.sub(_rounded, match[0]), text)
     styles = dict(_SYMBOL.findall(text))
@@ -211,13 +211,13 @@ def _shorten_svg(text: str) -> str:
         return match[0] if styles.get(name) != own else f'<use xlink:href="#{name}"{place}/>'
 
     text = re.sub(r"\n\s*", "\n", _GROUP_ID.sub("<g", _USE.sub(use, text)))
-    for _ in range(2):  # unwrap groups around one symbol
+    for _ in range(2):  # remove groups around a single symbol
         text = _BARE_GROUP.sub(r"\1", text)
     return text
 
 
 class _CachedTexts(TextToPath):
-    """Text renderer that typesets a formula and measures a text only once for all figures."""
+    """Text renderer that typesets a formula and measures a text once for all figures."""
 
     _formulas = MathTextParser("path")
 
@@ -240,7 +240,7 @@ def _measured(
 
 @contextlib.contextmanager
 def _share_text_cache() -> Iterator[None]:
-    """Let all renderers share one cache of texts and one parser."""
+    """Make all renderers share one cache of texts and one parser within a context."""
     own = vars(mpl_text)["TextToPath"]
     vars(mpl_text)["TextToPath"] = _CachedTexts
     try:
@@ -250,7 +250,7 @@ def _share_text_cache() -> Iterator[None]:
 
 
 def svg(figure: Figure) -> str:
-    """Return the figure as SVG text without date and random ids: equal data give equal bytes.
+    """Return the figure as SVG without date and random ids, so that equal data give equal text.
 
     Coordinates are rounded to 0.01 pt (4 um on paper), which halves the size of a trace.
 
@@ -271,7 +271,7 @@ def svg(figure: Figure) -> str:
 
 
 def save(figure: Figure, path: str | Path) -> Path:
-    """Write the figure as SVG, or in any matplotlib format given by the file extension.
+    """Write the figure as SVG, or in another format given by the file extension.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Figures on the page: initial view, and the picture shown until the script has drawn."""
+"""Figures on the report page: initial view, and the picture shown until the script has drawn it."""

@@ -1,4 +1,4 @@
-"""Shapes of a static figure: markers, lines, bands and bars as SVG paths, colours by class."""
+"""SVG of a static figure: markers, lines, bands and bars, with colours by CSS class."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ _DASHES: dict[Style, str] = {
     "longdash": "10 3",
 }
 _MARKER = 3.6  # half the width of a marker [px]
-_SEEN = 0.3  # largest distance of a simplified line from its points [px]
-_LEVELS = 5  # colours of a heat map
+_SEEN = 0.3  # largest distance between a line and its simplification [px]
+_LEVELS = 5  # number of colours in a heat map
 _LOW, _HIGH = 0.3, 3.0  # ends of the colour scale, as in `assets/chart.js`
-# number of corners of each marker (0: circle), and angle of the first one [turns from the top]
+# corners of each marker (0 is a circle), and angle of the first corner [turns from the top]
 _CORNERS = ((0, 0.0), (4, 0.125), (4, 0.0), (3, 0.0), (3, 0.5), (5, 0.0), (6, 0.25), (5, 0.0))
 
 
 def hue(colour: int) -> str:
-    """Return the CSS class of a palette index."""
+    """Return the CSS class of a palette colour."""
     return f"h{colour % _HUES}"
 
 
 def coordinate(value: float) -> str:
-    """Return a length [px] with visible digits only.
+    """Return a length [px] with only the digits that are visible.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def coordinate(value: float) -> str:
 
 
 def path(points: Iterable[PlacedPoint | None]) -> str:
-    """Return a line through points as SVG path, interrupted at None.
+    """Return an SVG path of lines through points, interrupted at None.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def path(points: Iterable[PlacedPoint | None]) -> str:
 
 
 def straightened(points: Sequence[PlacedPoint | None]) -> Iterator[PlacedPoint | None]:
-    """Yield a line without the points that have no visible effect.
+    """Yield the points of a line, except those that have no visible effect.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def straightened(points: Sequence[PlacedPoint | None]) -> Iterator[PlacedPoint |
 
 
 def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
-    """Yield the points of one piece kept by the Ramer-Douglas-Peucker algorithm."""
+    """Yield the points of one piece of a line kept by the Ramer-Douglas-Peucker algorithm."""
     x, y = np.array(part, float).T
     kept = {0, len(part) - 1}
     spans = [(0, len(part) - 1)]
@@ -96,7 +96,7 @@ def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
 
 
 def markers(points: Sequence[PlacedPoint], marker: int, sizes: Iterable[float]) -> str:
-    """Return the SVG path of a marker of given size [px] at each point."""
+    """Return an SVG path of a marker of given size [px] at each point."""
     corners, turn = _CORNERS[marker % _HUES]
     return "".join(
         _marker(*at, size, corners, turn) for at, size in zip(points, sizes, strict=True)
@@ -117,7 +117,7 @@ def _marker(x: float, y: float, size: float, corners: int, turn: float) -> str:
 def error_bars(
     bars: Iterable[tuple[float, float, float]], cap: float, *, lying: bool = False
 ) -> str:
-    """Return the SVG path of error bars with caps [px]: vertical, or horizontal if `lying`."""
+    """Return an SVG path of error bars with caps [px]: vertical, or horizontal if `lying`."""
     parts = []
     for at, low, high in bars:
         lines = [[(at, low), (at, high)]]
@@ -129,7 +129,7 @@ def error_bars(
 def drawn_points(
     points: Sequence[PlacedPoint], series: Series, bars: str = "", areas: Sequence[float] = ()
 ) -> Iterator[str]:
-    """Yield the error bars of a series and its markers of relative `areas`."""
+    """Yield the SVG of a series' error bars, and of its markers with relative `areas`."""
     if bars:
         kind = "bar pale" if series.pale else "bar"
         yield f'<path class="{_hue(series)} {kind}" d="{bars}"/>'
@@ -140,7 +140,7 @@ def drawn_points(
 
 
 def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator[str]:
-    """Yield the line of a series."""
+    """Yield the SVG of a series' line."""
     dash = _DASHES.get(series.style)
     look = f' stroke-dasharray="{dash}"' if dash else ""
     kind = "line thin" if series.thin else "line"
@@ -148,7 +148,7 @@ def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator
 
 
 def _hue(series: Series) -> str:
-    """Return the CSS classes of a colour and its shade, as defined in `still.css`."""
+    """Return the CSS classes of a series' colour and shade, defined in `still.css`."""
     tenths = round(10 * series.shade)
     shade = f" {'dark' if tenths < 0 else 'pale'}{abs(tenths)}" if tenths else ""
     return hue(series.colour) + shade
@@ -157,14 +157,14 @@ def _hue(series: Series) -> str:
 def drawn_band(
     low: Sequence[PlacedPoint], high: Sequence[PlacedPoint], series: Series
 ) -> Iterator[str]:
-    """Yield the area between two lines."""
+    """Yield the SVG of the area between two lines."""
     if low and high:
         around = straightened([*low, *reversed(high)])
         yield f'<path class="{_hue(series)} band" d="{path(around)}z"/>'
 
 
 def drawn_heat(points: Sequence[tuple[PlacedPoint, float]]) -> Iterator[str]:
-    """Yield dots coloured by level, grouped by colour."""
+    """Yield the SVG of dots whose colour shows their level."""
     by_level: dict[int, list[PlacedPoint]] = {}
     for point, value in points:
         share = (value - _LOW) / (_HIGH - _LOW)

@@ -1,4 +1,4 @@
-"""Static SVG of a live figure, shown until a script draws it, and for print.
+"""Static SVG of an interactive figure, shown until the script draws it, and when printed.
 
 It shows the initial view. So the first screen is complete immediately, and pages have figures if
 they are printed early or scripts do not run. Colours are classes of `assets/still.css`, for light
@@ -31,19 +31,19 @@ from tribolab.figures.spec import (
     written_labels,
 )
 
-_WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], about as on paper
-_HEIGHTS = (300, 430, 580)  # of figures of one, two and three panels
+_WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], similar to paper
+_HEIGHTS = (300, 430, 580)  # height [px] of figures with one, two and three panels
 _LETTER = 6.6  # mean width of a character [px]
 _LINE = 18  # height of a legend row [px]
 _TOP, _RIGHT, _BOTTOM = 8, 12, 42
 _BETWEEN = 16  # distance between panels [px]
-_MAX_POINTS = 240  # most points of a line
+_MAX_POINTS = 240  # largest number of points of a line
 _MAX_HEAT = 400
 
 
 @dataclass(frozen=True)
 class _Box:
-    """Box of one panel [px], and the ranges of its axes."""
+    """Position of one panel [px], and the ranges of its axes."""
 
     left: float
     top: float
@@ -53,7 +53,7 @@ class _Box:
     y: Scale
 
     def at(self, x: object, y: object) -> PlacedPoint | None:
-        """Return the position of a point in the box, clipped to one box size outside."""
+        """Return the position of a point in the panel; points far outside are clipped."""
         across, up = self.x.place(x), self.y.place(y)
         if across is None or up is None:
             return None
@@ -65,7 +65,7 @@ def _clip(share: float) -> float:
 
 
 def still(figure: FigureSpec) -> str:
-    """Return a figure as SVG; with selectable loads it shows the lowest."""
+    """Return a figure as SVG; if loads are selectable, it shows the lowest load."""
     width = _WIDTHS[figure.width]
     series, seen = first_view(figure)
     labels = legend(series)
@@ -84,7 +84,7 @@ def still(figure: FigureSpec) -> str:
 
 
 def first_view(figure: FigureSpec) -> tuple[list[Series], list[tuple[Scale, Scale]]]:
-    """Return the initially visible series of a figure, and the ranges of each panel."""
+    """Return the series that are visible at first, and the axis ranges of each panel."""
     series = first_series(figure)
     seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
     if len(seen) > 1:  # panels in a column share their abscissa
@@ -94,7 +94,7 @@ def first_view(figure: FigureSpec) -> tuple[list[Series], list[tuple[Scale, Scal
 
 
 def first_series(figure: FigureSpec) -> list[Series]:
-    """Return the initially visible series, with values as plain numbers."""
+    """Return the series that are visible at first, with their data as plain numbers."""
     shown = []
     for curve in figure.series:
         other = figure.one_load and curve.load is not None and curve.load != figure.loads[0]
@@ -126,7 +126,7 @@ def _legend(labels: dict[str, Series], width: int) -> Iterator[str]:
 def _boxes(
     seen: Sequence[tuple[Scale, Scale]], width: int, top: float, height: float
 ) -> list[_Box]:
-    """Return the boxes of panels in a column, with room for labels on the left."""
+    """Return the positions of the panels in a column, with room for labels on the left."""
     names = max((len(name) for _, y in seen for name in y.names), default=0)
     left = min(names * _LETTER + 12, 0.45 * width) if names else 58
     count = len(seen)
@@ -158,7 +158,7 @@ def _panel(figure: FigureSpec, place: int, box: _Box, series: Sequence[Series]) 
 
 
 def _line(mark: Mark, box: _Box) -> str:
-    """Return a line across a panel at a value, or a shaded interval."""
+    """Return the SVG of a straight line across a panel, or of a shaded interval."""
     scale, size = (box.x, box.width) if mark.side == "x" else (box.y, box.height)
     ends = [scale.place(value) for value in (mark.value, mark.until) if value is not None]
     at = [size * (_clip(e) if mark.side == "x" else 1 - _clip(e)) for e in ends if e is not None]
@@ -204,7 +204,7 @@ def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
 
 
 def _band_edge(value: Any, box: _Box) -> Any:
-    """Return the lower edge of a band; below the range if it is not positive on a log axis."""
+    """Return a band's lower edge, moved below the range if it is not positive on a log axis."""
     if box.y.log and value is not None and not value > 0:
         return 10.0 ** (box.y.low - (box.y.high - box.y.low))
     return value
@@ -227,7 +227,7 @@ def _bars(curve: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, 
 
 
 def _rows(curve: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
-    """Yield the bars of a series, which share rows with other series of the same names."""
+    """Yield the SVG of a series' bars, in rows shared with other series of the same names."""
     every = [one for one in every if set(one.y) & set(curve.y)]
     thick = 0.8 * box.height / len(box.y.names) / len(every)
     below = next(k for k, other in enumerate(every) if other is curve) - 0.5 * len(every)
@@ -275,7 +275,7 @@ def _named(axis: Axis) -> str:
 
 
 def _tick(value: float, log: bool, unit: str) -> str:
-    """Return the label of a tick as in the live figure: powers of ten if the axis has a unit."""
+    """Return a tick label as in the interactive figure: powers of ten if the axis has a unit."""
     text = number(value, 6)
     power = math.log10(value) if log else 0.0
     if not (log and unit or "e" in text) or power != round(power) or power in (0, 1):

@@ -1,1 +1,1 @@
-"""Descriptions of the figures: one module per subject."""
+"""Descriptions of all figures, one module per subject."""

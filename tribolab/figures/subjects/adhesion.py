@@ -1,4 +1,4 @@
-"""Contacts with adhesion: real contact area, effective work of adhesion."""
+"""Figures of adhesive contact: real contact area, effective work of adhesion."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def effective_work(
     relative_to: Mapping[str, float] | None = None,
     surfaces: Sequence[str] = (),
 ) -> FigureSpec:
-    """Draw the effective work of adhesion over the magnification.
+    """Draw the effective work of adhesion over magnification.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Figures that compare campaigns, and an instrument over time."""
+"""Figures that compare campaigns, and that show an instrument over time."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
 
-_MANIFOLD = 300.0  # %: threshold for a logarithmic scale
-_SPREAD = 0.06  # offset of points of several conditions at one speed
+_MANIFOLD = 300.0  # %; larger differences are drawn on a logarithmic scale
+_SPREAD = 0.06  # offset between points of several conditions at one speed
 
 
 @plotted()
 def differences(points: pd.DataFrame) -> FigureSpec:
-    """Draw the relative difference of two measured curves over speed.
+    """Draw the relative difference between two measured curves over speed.
 
     Bars: simultaneous 95 % intervals of all differences; filled points differ. Values are relative
     to the first curve.
@@ -96,7 +96,7 @@ _WORDS = {
 
 @plotted()
 def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second")) -> FigureSpec:
-    """Draw the relative differences of two campaigns as a forest plot, one row each.
+    """Draw the relative differences between two campaigns as a forest plot.
 
     Thin bars: 95 %; thick pale ones: 90 %, the level at which equivalence is decided.
 
@@ -167,7 +167,7 @@ def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second
 
 @plotted()
 def control(table: pd.DataFrame) -> FigureSpec:
-    """Draw one quantity of an instrument over time with its control limits.
+    """Draw one quantity of an instrument over time, with its control limits.
 
     Open points: baseline; red points: signals.
 
@@ -223,7 +223,7 @@ def control(table: pd.DataFrame) -> FigureSpec:
                 Series(label, days[part], column["value"][part], "points", columns={}, **own)
             )
     quantity, unit = str(table["quantity"].iloc[0]), str(table["unit"].iloc[0])
-    # one campaign has a zero range of days
+    # a single campaign has no range of days
     room = 0.06 * np.ptp(days) or 1.0
     date = Axis("date", "date", view=(float(days.min() - room), float(days.max() + room)))
     y = Axis(quantity, "" if unit == "1" else unit)

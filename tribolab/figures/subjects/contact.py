@@ -1,4 +1,4 @@
-"""Rough contacts without adhesion: contact area, gaps, pressure across a line contact."""
+"""Figures of rough contacts without adhesion: contact area, gaps, pressure of a line contact."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _MPA, _MM, _UM = 1e-6, 1e3, 1e6
 _MAX_NAMED_LOADS = 5
 PRESSURE_AXIS = axis_of("pressure", unit="MPa", log=True)
 AREA_AXIS = axis_of("contact_area_ratio", log=True, decades=4)  # smaller areas are negligible
-_MAX_POINTS = 200  # points per line with several loads
+_MAX_POINTS = 200  # largest number of points per line if there are several loads
 
 
 @plotted()
 def contact_area(
     contacts: SurfaceOrSeveral, loads: xr.Dataset | None = None, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the relative contact area without adhesion over pressure, Hertz pressures marked.
+    """Draw the relative contact area without adhesion over pressure, and mark the Hertz pressures.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def contact_area(
 def area_series(
     name: str, data: xr.Dataset, style: Style, colour: int, what: str = "", medium: str = ""
 ) -> list[Series]:
-    """Return the contact area of a surface with its band."""
+    """Return the contact area of a surface, and its band, as series."""
     x, area = _MPA * data["pressure"].values, data["contact_area_ratio"].values
     label = f"{name}, {what}" if what else name
     hover = (label,) if what else ()
@@ -110,7 +110,7 @@ def hertz_marks(loads: xr.Dataset | None) -> tuple[Mark, ...]:
 
 @plotted()
 def gaps(distributions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw the distribution of the gap, u P(u) over ln u: equal areas are equal shares.
+    """Draw the gap distribution as u P(u) over ln u, where equal areas are equal probabilities.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def gaps(distributions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> Fi
     colours = surface_colours([*surfaces, *distributions])
     series = []
     for name, data in distributions.items():
-        smallest = data.attrs.get("cutoff_m", 0.0)  # smaller gaps are below atomic size
+        smallest = data.attrs.get("cutoff_m", 0.0)  # smaller gaps are below the size of an atom
         for load, line in by_load(data):
             u = line["gap"].values
             share = u * line["gap_density"].values
@@ -158,7 +158,7 @@ def line_pressure(
     *,
     surfaces: Sequence[str] = (),
 ) -> FigureSpec:
-    """Draw the pressure across dry rough line contacts, and that of Hertz.
+    """Draw the pressure across dry rough line contacts, and the Hertz pressure.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def line_pressure(
 def contact_separation(
     separations: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the contact pressure over the mean separation in units of the roughness.
+    """Draw the contact pressure over the mean separation in units of the rms roughness.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Friction over speed: measured Stribeck curves with or without a model."""
+"""Figures of friction over speed: measured Stribeck curves, with or without a model."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, axis_of
 
 Scale = Literal["auto", "log", "linear"]
-MIN_RATIO_FOR_LOG = 5.0  # highest to lowest µ; below it a linear axis shows the minimum
-_DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first available one is drawn
-# coordinates of a dataset with several curves, and the equivalent attributes of one curve
+MIN_RATIO_FOR_LOG = 5.0  # ratio of highest to lowest µ below which a linear axis shows the minimum
+_DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first recorded one is drawn
+# coordinates of a dataset with several curves, and equivalent attributes of a single curve
 _ATTRIBUTES = {
     "surface": "surface",
     "medium": "medium",
@@ -126,11 +126,11 @@ def _listed(curves: MeasuredCurves) -> list[xr.Dataset]:
 
 
 def _each(curves: xr.Dataset) -> list[xr.Dataset]:
-    """Return the curves of a dataset with several curves, labelled by their coordinates."""
+    """Return the curves of a dataset one by one, labelled by its coordinates."""
     varying = {dim for name in _DRAWN if name in curves for dim in curves[name].dims}
     along = [dim for dim in ("surface", "medium", "normal_force", "run") if dim in varying]
     if not along:
-        return [curves.copy(deep=False)]  # copied, as a curve given twice is drawn twice
+        return [curves.copy(deep=False)]  # a copy, so that a curve given twice is drawn twice
     parts = []
     for place in range(curves.sizes[along[0]]):
         part = curves.isel({along[0]: place})
@@ -166,7 +166,7 @@ def _load(curve: xr.Dataset) -> float | None:
 
 
 class CurveLook(NamedTuple):
-    """Style of a curve: label, colour, shade, marker and series labels."""
+    """Style of a curve: label, colour, shade, marker, and labels of the series."""
 
     label: str
     colour: int
@@ -176,7 +176,7 @@ class CurveLook(NamedTuple):
 
 
 def curve_looks(curves: Sequence[xr.Dataset], surfaces: Sequence[str] = ()) -> list[CurveLook]:
-    """Return the style of each curve of a figure: colour by surface, shade and marker by load.
+    """Return the style of each curve: colour by surface, shade and marker by load.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def curve_looks(curves: Sequence[xr.Dataset], surfaces: Sequence[str] = ()) -> l
 
 
 def _difference(curve: xr.Dataset, curves: Sequence[xr.Dataset]) -> str:
-    """Return in words what distinguishes this curve from the others in the figure."""
+    """Return text on what distinguishes a curve from the others in the figure."""
     words = []
     for name in ("surface", "medium"):
         if len({_attribute(c, name) for c in curves}) > 1 and _attribute(curve, name):

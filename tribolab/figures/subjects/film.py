@@ -1,4 +1,4 @@
-"""Figures of the film: profiles across the contact, flow and friction factors."""
+"""Figures of lubricated contacts: film profiles, flow and friction factors."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _PANELS = (
     ),
     ("fluid_pressure", 1e-6, Axis("p liquid", "MPa", paper=r"fluid pressure $p_{\mathrm{fluid}}$")),
 )
-_NOTHING = 1e-3  # share of the highest pressure below which a profile ends
+_NOTHING = 1e-3  # share of the maximum pressure below which a profile ends
 _WIDEST_GAP = 100.0  # ratio of the largest to the smallest gap drawn
-_MAX_POINTS = 160  # points of a profile
+_MAX_POINTS = 160  # largest number of points of a profile
 _ACROSS = Axis("across the contact", "mm", paper="coordinate $x$")
 _FACTORS: tuple[tuple[str, str, Style, int], ...] = (
     ("pressure_flow_factor", "pressure flow factor", "line", 0),
@@ -36,7 +36,7 @@ _FACTORS: tuple[tuple[str, str, Style, int], ...] = (
 
 @plotted(panels=3)
 def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
-    """Draw separation, contact and fluid pressure across the contact at several speeds.
+    """Draw separation, contact pressure and fluid pressure across the contact at several speeds.
 
     The flat slides to +x, so the inlet is on the left.
 
@@ -74,7 +74,7 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
         kept = inside[thinned(inside.size, _MAX_POINTS)]
         for panel, (name, factor, _) in enumerate(_PANELS):
             x, y = 1e3 * profile["x"].values[kept], factor * profile[name].values[kept]
-            if name == "separation":  # it grows without limit outside the contact
+            if name == "separation":  # outside the contact, separation increases without limit
                 y = np.where(y <= _WIDEST_GAP * y.min(), y, np.nan)
             series.append(Series(label, x, y, colour=number, panel=panel))
     return FigureSpec(
@@ -91,7 +91,7 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
 def lubrication_factors(
     factors: Mapping[str, xr.Dataset] | xr.Dataset, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw flow and friction factors over the separation in units of the roughness.
+    """Draw flow and friction factors over separation in units of the rms roughness.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def lubrication_factors(
 
 
 def _relative_separation(factors: xr.Dataset) -> np.ndarray:
-    """Return the separation in units of the roughness."""
+    """Return the separation divided by the rms roughness."""
     if "relative_separation" in factors.coords:
         return factors["relative_separation"].to_numpy()
     return factors["separation"].to_numpy() / float(factors.attrs["rms_roughness_m"])

@@ -1,4 +1,4 @@
-"""Figures of the joint fit of all loads, and of a model's sensitivity."""
+"""Figures of the joint fit to all loads, and of the sensitivity of a model."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from tribolab.figures.subjects.curves import SPEED_AXIS
 
 
 class FittedCurves(Protocol):
-    """Protocol of a `JointFit`: its points and its curves."""
+    """Attributes of a `JointFit` that the figure needs: its points and its curves."""
 
     @property
     def points(self) -> xr.Dataset:
-        """Measured points and the model (point)."""
+        """Measured points and fitted friction (point)."""
 
     @property
     def curves(self) -> xr.Dataset:
-        """The model with its band (curve, sliding_speed)."""
+        """Fitted friction and its band (curve, sliding_speed)."""
 
 
 @plotted(panels=2)
 def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw the curves of a joint fit with their band, and the relative residuals.
+    """Draw the curves of a joint fit with their bands, and the relative residuals.
 
     Above: points with 95 % intervals of their own errors; the model at each load with the 95 % band
     of its parameters and of the errors shared by the points of a load. Below: the relative
@@ -80,7 +80,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
 
 
 def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Arguments]:
-    """Return colour of the surface, shade by load, and marker by medium, of each curve."""
+    """Return the style of each curve: colour by surface, shade by load, marker by medium."""
     own = [str(name) or surface for name in curves["surface"].values]
     colours = surface_colours([*surfaces, *own])
     loads = curves["load"].values
@@ -89,7 +89,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
     for name, load in zip(own, loads, strict=True):
         of_surface = np.unique(loads[[other == name for other in own]])
         rank = int(np.searchsorted(of_surface, load))
-        again = seen.count((name, load))  # also measured wet at this load
+        again = seen.count((name, load))  # another medium was measured at this load
         seen.append((name, load))
         shade = shade_of(rank, of_surface.size)
         marker = rank + again * of_surface.size
@@ -98,7 +98,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
 
 
 def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) -> list[Series]:
-    """Return band, line, points and differences of one load."""
+    """Return the series of one load: band, line, points and residuals."""
     v, measured = curve["sliding_speed"].values, points["sliding_speed"].values
     mu, sem = (points[f"friction_coefficient{end}"].values for end in ("", "_sem"))
     off, shared = (
@@ -124,7 +124,7 @@ def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) 
 def model_sensitivity(
     uncertainty: xr.Dataset, *, surface: str = "", surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the band of a model curve, and its sensitivity to each uncertain input.
+    """Draw the band of a computed curve, and its sensitivity to each uncertain input.
 
     Bars: the largest change of mu over all speeds, up and down, relative to the peak of the curve,
     for the low and the high end of each range; the longest on top.
@@ -159,7 +159,7 @@ def model_sensitivity(
     change = 100 * (uncertainty["friction_coefficient_varied"].values - mu) / mu.max()
     filled = np.nan_to_num(change)
     place = np.argmax(np.abs(filled), axis=-1)[..., None]
-    most = np.take_along_axis(filled, place, axis=-1)[..., 0]  # signed, (variation, end)
+    most = np.take_along_axis(filled, place, axis=-1)[..., 0]  # signed (variation, end)
     most = np.where(np.isfinite(change).any(axis=-1), most, np.nan)
     order = np.argsort(np.nanmax(np.abs(np.nan_to_num(most)), axis=1))
     for end, colour in enumerate((BLUE, ORANGE)):

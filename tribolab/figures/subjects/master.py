@@ -1,4 +1,4 @@
-"""Master curve: friction in several liquids over viscosity times speed, with regimes."""
+"""Figure of the master curve: friction in several liquids over viscosity times speed."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
 from tribolab.fit.master_curve import Collapse
 
-# Film ratio h/h_rms at which mixed lubrication begins and ends: G. Stachowiak, A. Batchelor,
-# Engineering Tribology (2013), Ch. 7
+# Film ratio h/h_rms at which mixed lubrication begins and ends (G. Stachowiak, A. Batchelor,
+# Engineering Tribology, 2013, Ch. 7)
 _MIXED = ((1.0, "boundary | mixed"), (3.0, "mixed | full film"))
 
 
@@ -27,7 +27,7 @@ def master_curve(
     model: xr.Dataset | None = None,
     rms_roughness: float = 0.0,
 ) -> FigureSpec:
-    """Draw friction in several liquids over viscosity times speed, and the regimes.
+    """Draw friction in several liquids over viscosity times speed, with the lubrication regimes.
 
     Parameters
     ----------
@@ -90,13 +90,13 @@ def _speed(curve: xr.Dataset) -> np.ndarray:
 
 
 def _reduced(curve: xr.Dataset, viscosity: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return viscosity times speed [N/m] and friction, without points at rest."""
+    """Return viscosity times speed [N/m] and friction of all points that are not at rest."""
     speed = _speed(curve)
     return viscosity * speed[speed > 0], curve["friction_coefficient"].values[speed > 0]
 
 
 def _regimes(at: np.ndarray, film: np.ndarray) -> tuple[Mark, ...]:
-    """Mark the boundaries of mixed lubrication: the speed above, the film ratio below."""
+    """Return lines at the limits of mixed lubrication, labelled by film ratio."""
     marks = [Mark("y", limit, style="dotted", panel=1) for limit, _ in _MIXED]
     for limit, text in _MIXED:
         if film[0] < limit < film[-1]:

@@ -1,4 +1,4 @@
-"""Mixed lubrication and measurement: curve with residuals, shear stress, friction factors."""
+"""Figures of mixed lubrication: fitted curve with residuals, shear stress, friction factors."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def mixed_curve(
     errors: ErrorBars = "U95",
     scale: Literal["log", "linear"] = "log",
 ) -> FigureSpec:
-    """Draw a measured Stribeck curve, the model with its parts, and the residuals.
+    """Draw a measured Stribeck curve, the model and its contributions, and the residuals.
 
     Above: points with their error bars, the model as a line, its solid part dashed and its viscous
     part dotted, dry points open. Below: the residuals (measured minus model) with their 95 %
@@ -141,7 +141,7 @@ def _measured(data: xr.Dataset, text: str, errors: ErrorBars, own: Arguments) ->
 
 @plotted()
 def shear_stress(table: pd.DataFrame, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw fitted shear stresses over the load: as fitted, and in the area increased by adhesion.
+    """Draw fitted shear stresses over load, as fitted and for the contact area with adhesion.
 
     Open symbols: effective, for the area without adhesion, with the 95 % interval. Filled:
     corrected for adhesion, with U95. Bars end at zero, since no shear stress is negative.
@@ -214,7 +214,7 @@ def shear_stress(table: pd.DataFrame, *, surfaces: Sequence[str] = ()) -> Figure
     )
 
 
-_UNITS = ("_N", "_Pa")  # units of the columns of `figure_data`
+_UNITS = ("_N", "_Pa")  # endings of the columns of `figure_data` with a unit
 
 
 @plotted()
@@ -224,7 +224,7 @@ def friction_factor_effect(
     scale: Literal["log", "linear"] = "log",
     surfaces: Sequence[str] = (),
 ) -> FigureSpec:
-    """Draw model curves with the friction factors of the roughness and without them.
+    """Draw computed curves with and without the friction factors of rough surfaces.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ def friction_factor_effect(
 def shear_stress_over_speed(
     curves: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the shear stress in the real contact over the sliding speed.
+    """Draw the shear stress in the real contact area over sliding speed.
 
     Parameters
     ----------

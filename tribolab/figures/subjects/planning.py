@@ -1,4 +1,4 @@
-"""Figures of precision: parts of the uncertainty, repeatability, runs needed."""
+"""Figures of precision: uncertainty budget, repeatability, number of runs needed."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.metrology.budget_result import UncertaintyBudget
 
-_MIN_SHARE = 1e-3  # share of the largest part below which a part has no bar
-_SPREAD = 0.06  # offset of points at one speed
+_MIN_SHARE = 1e-3  # share of the largest contribution below which a contribution has no bar
+_SPREAD = 0.06  # offset between points at one speed
 
 
 @plotted()
 def uncertainty_budget(budget: UncertaintyBudget, at: int | None = None) -> FigureSpec:
-    """Draw a bar for each part of the uncertainty of one friction coefficient.
+    """Draw a bar for each contribution to the uncertainty of one friction coefficient.
 
     Bars: effect of one standard uncertainty of each part on the friction coefficient, in per cent
     of it, the largest on top; at the bottom the combined standard uncertainty, with the words
@@ -67,7 +67,7 @@ _ASSURED = {"runs": "assured_runs", "cheapest_runs": "cheapest_assured_runs"}
 
 @plotted()
 def runs_needed(table: pd.DataFrame) -> FigureSpec:
-    """Draw the number of runs that reaches a precision at each speed.
+    """Draw the number of runs needed to reach a precision, over speed.
 
     Filled: runs that slide as long as those of the pilot; open: runs of the cheapest sliding time;
     bars up to the number of runs that reaches the precision with assurance.

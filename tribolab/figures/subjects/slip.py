@@ -1,4 +1,4 @@
-"""Stick-slip: traces, events, and the map of waveforms."""
+"""Figures of stick-slip: traces, events, and the map of waveforms."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from tribolab.friction.oscillation.slip_curve import one_curve
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 
 _COLUMNS = 500
-_GAP = 0.25  # gap between stacked traces, as share of the highest trace
-_MAX_EVENTS = 300  # points of a distribution
+_GAP = 0.25  # gap between stacked traces, as share of the range of the highest
+_MAX_EVENTS = 300  # largest number of points of a distribution
 _LOOKS: dict[str, Arguments] = {
     CLASSES[0]: {"colour": GREY, "marker": 0, "open": True},
     CLASSES[1]: {"colour": BLACK, "marker": 3},
@@ -35,7 +35,7 @@ _LOOKS: dict[str, Arguments] = {
 
 
 class Trace(NamedTuple):
-    """One stroke to draw: its label, run, segments and friction, and the number of the segment.
+    """One stroke to draw: its label, run, segments and friction, and the segment number.
 
     `surface` chooses the colour.
 
@@ -59,7 +59,7 @@ class Trace(NamedTuple):
 def slip_traces(
     traces: Sequence[Trace], surfaces: Sequence[str] = (), *, longest: float | None = None
 ) -> FigureSpec:
-    """Draw friction against sliding distance, stroke above stroke, each shifted to be seen.
+    """Draw friction over sliding distance, one stroke above another.
 
     Every trace has the same scale; the legend states its shift.
 
@@ -128,13 +128,13 @@ def slip_traces(
 
 
 def _round_up(shift: float, gap: float) -> float:
-    """Return the next larger shift, rounded to the leading digit of the gap."""
+    """Return a shift rounded up to the leading digit of the gap."""
     digits = -math.floor(math.log10(gap)) if gap > 0 else 2
     return round(math.ceil(round(shift * 10.0**digits, 6)) / 10.0**digits, max(digits, 0))
 
 
 def _shift_text(shift: float) -> str:
-    """Return the shift of a trace in words.
+    """Return text on the shift of a trace.
 
     Examples
     --------
@@ -159,7 +159,7 @@ def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
 
 @plotted(panels=3)
 def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec:
-    """Draw cumulative distributions of drops, recurrence distances and durations of events.
+    """Draw cumulative distributions of drop, recurrence distance and duration of slip events.
 
     Cumulative shares need no choice of bins.
 
@@ -205,7 +205,7 @@ def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec
 
 
 def cumulative(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return sorted values and cumulative shares, thinned if there are very many.
+    """Return sorted values and their cumulative shares; very many values are thinned out.
 
     Examples
     --------
@@ -242,7 +242,7 @@ def _event_columns(slip: xr.Dataset) -> list[tuple[Axis, np.ndarray]]:
 
 @plotted()
 def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
-    """Draw the waveform class and the drop of every condition at every speed.
+    """Draw waveform class and drop of each condition at each speed.
 
     Marker and colour: the class; area: the drop.
 
@@ -301,7 +301,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
 
 
 def _each(curves: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return the curves of a dataset by label, the last one first."""
+    """Return the curves of a dataset by label, the last first."""
     named = {label: one_curve(part) for label, part in parts(curves, "sliding_speed").items()}
     return {label: part for label, part in reversed(named.items()) if part.sizes["sliding_speed"]}
 

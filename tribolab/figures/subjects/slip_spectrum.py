@@ -1,4 +1,4 @@
-"""Figures of stick-slip spectra over frequency, and over frequency and speed."""
+"""Figure of stick-slip spectra over frequency and speed."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from tribolab.figures.labelled import RunLabel, by_label
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, Style
 
-_LOUDEST, _QUIETEST = 3.0, 0.3  # log10 of power over noise: highest and lowest level of a map
+_LOUDEST, _QUIETEST = 3.0, 0.3  # highest and lowest level of a map, as log10 of power over noise
 Slips = Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset]
 
 
 @plotted(panels=0)
 def slip_spectra(slips: Slips, *, segment: int = 0, **labels: Sequence[RunLabel]) -> FigureSpec:
-    """Draw the power spectra of segments with their background and the limit of noise.
+    """Draw the power spectra of segments, with background and noise limit.
 
     A panel for each; the dominant oscillation and lines of the mains are marked.
 
@@ -87,14 +87,14 @@ def slip_spectra(slips: Slips, *, segment: int = 0, **labels: Sequence[RunLabel]
 
 
 def _heading(label: str, row: xr.Dataset) -> str:
-    """Return a label with waveform and dominant frequency in words."""
+    """Return a label with the waveform and the dominant frequency."""
     words = " ".join(filter(None, (str(row["regularity"].item()), str(row["waveform"].item()))))
     own = row["dominant_frequency"].item()
     return f"{label}: {words}" + (f", {own:.3g} Hz" if np.isfinite(own) else "")
 
 
 def power_levels(slip: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Return speed, frequency and log10 of power over noise where it exceeds twice the noise.
+    """Return speed, frequency and log10 of power over noise where power exceeds twice the noise.
 
     None if no segment has a spectrum.
     """

@@ -1,4 +1,4 @@
-"""Figures of the scatter of friction: half loops by pair, error bars over speed."""
+"""Figures of the scatter of friction: half loops of stroke pairs, error bars over speed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tribolab.figures.subjects.curves import SPEED_AXIS, curve_looks
 
 @plotted()
 def half_loop(friction: xr.Dataset) -> FigureSpec:
-    """Draw half the force difference of each pair of strokes: friction without the offset.
+    """Draw half the force difference of each stroke pair, which is friction without offset.
 
     Points: a pair each, in the order of the run; line: their mean.
 
@@ -66,7 +66,7 @@ def half_loop(friction: xr.Dataset) -> FigureSpec:
 def friction_spread(
     measured: xr.Dataset | Sequence[xr.Dataset], *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw measured friction over speed with its error bars, and below it the bars themselves.
+    """Draw measured friction with its error bars over speed, and the bar lengths below.
 
     Above: bars of one standard deviation while sliding, the error bar of the reference study; lines
     guide the eye. Below: the standard deviation with filled markers, the expanded uncertainty of

@@ -1,4 +1,4 @@
-"""Figures of the start of sliding, and of friction from cycle to cycle."""
+"""Figures of static friction, and of friction in each cycle."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, axis_of
 
 _WIDE = 10.0  # ratio of longest to shortest rest above which the axis is logarithmic
-_TREND = 0.01  # p-value below which a linear trend is drawn
+_TREND = 0.01  # p value below which a linear trend is drawn
 
 
 @plotted()
 def static_friction(
     starts: xr.Dataset | Mapping[str, xr.Dataset], *, over: str = "waiting_time"
 ) -> FigureSpec:
-    """Draw static friction over the time of rest before each start, and sliding friction.
+    """Draw static friction over the rest before each start, and sliding friction.
 
     Filled markers: static friction with its standard error; open ones: starts that do not exceed
     the sliding friction that follows; hexagons: that sliding friction.
@@ -92,7 +92,7 @@ def static_friction(
 
 @plotted()
 def cycles(friction: xr.Dataset | Mapping[str, xr.Dataset]) -> FigureSpec:
-    """Draw the friction coefficient of each cycle over the number of the cycle.
+    """Draw the friction coefficient of each cycle over the cycle number.
 
     Dots: from the forces in the middle of the strokes; grey line: from the energy of the loop, if
     known; dashes: the linear trend, if significant (p < 1 %).

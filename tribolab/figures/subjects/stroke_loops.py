@@ -1,4 +1,4 @@
-"""All strokes of a run side by side: one panel per speed."""
+"""Figure of all strokes of a run side by side, one panel per speed."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series
 from tribolab.figures.subjects.traces import MEAN, SHADES, Span, friction_axis
 
 _LINES = {1: BLACK, -1: ORANGE, 0: SKY}
-_MAX_PANELS, _MAX_LINES = 24, 6  # strokes; lines per direction and panel
-_POINTS = 1700  # pixel columns in all panels, which keeps the figure below 150 kB
-_TOLERANCE = 0.05  # largest relative difference of speeds that count as one
+_MAX_PANELS, _MAX_LINES = 24, 6  # largest numbers of panels, and of lines per direction and panel
+_POINTS = 1700  # pixel columns in all panels together, which keeps the figure below 150 kB
+_TOLERANCE = 0.05  # largest relative difference between speeds that count as equal
 _Item = TypeVar("_Item")
 
 
@@ -29,7 +29,7 @@ _Item = TypeVar("_Item")
 def strokes(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset | None = None
 ) -> FigureSpec:
-    """Draw every segment over its own sliding distance, one panel per speed, slowest first.
+    """Draw each segment over its own sliding distance, one panel per speed, slowest first.
 
     A run that takes 1000 s at 1 um/s and 1 s at 1 cm/s cannot be judged on one time axis; here
     every speed has the same width. Forward and backward strokes overlap, both positive in their own
@@ -101,7 +101,7 @@ def strokes(
 def _strokes_of_speed(
     group: list[Stroke], signal: Signal, friction: xr.Dataset | None, budget: int, panel: int
 ) -> tuple[list[Series], str, Span]:
-    """Return the strokes of one speed, their mean in words, and the range between trimmed ends."""
+    """Return the strokes of one speed, text on their mean, and the range between trimmed ends."""
     series, ends = [], []
     for part in _chosen(group):
         length = part.distance[-1] or 1.0
@@ -124,7 +124,7 @@ def _strokes_of_speed(
 
 
 def _view(series: Sequence[Series], ends: Span) -> Span:
-    """Return limits that fit the strokes between their trimmed ends."""
+    """Return axis limits that fit the strokes between their trimmed ends."""
     inside = []
     for one in series:
         x, y = np.asarray(one.x, float), np.asarray(one.y, float)
@@ -138,7 +138,7 @@ def _view(series: Sequence[Series], ends: Span) -> Span:
 
 
 def _grouped(parts: list[Stroke]) -> list[list[Stroke]]:
-    """Group strokes whose speeds agree within the tolerance; unknown speeds come last."""
+    """Return strokes grouped by equal speed; those of unknown speed come last."""
     ordered = sorted(parts, key=lambda p: (not np.isfinite(p.speed), p.speed, p.number))
     groups: list[list[Stroke]] = []
     for part in ordered:
@@ -165,7 +165,7 @@ def _chosen(group: list[Stroke]) -> list[Stroke]:
 
 
 def _sign(part: Stroke, signal: Signal, friction: xr.Dataset | None) -> float:
-    """Return the sign that makes ordinary friction positive; some instruments rectify."""
+    """Return the sign that makes friction positive in both directions, also if it was rectified."""
     if friction is not None and "friction_coefficient" in friction:
         values = signal.values[part.samples]
         values = values[np.isfinite(values)]

@@ -55,7 +55,7 @@ def profiles(
         first = scan[["height"]].isel({dim: [0] for dim in ("scan",) if dim in scan.dims})
         height = (first if own == "none" else remove_form(first, own))["height"]
         profile = height.isel({dim: height.sizes[dim] // 2 for dim in height.dims if dim != "x"})
-        if not np.isfinite(profile.values).any():  # a row of a map without any height
+        if not np.isfinite(profile.values).any():  # this row of a map has no measured height
             continue
         x, z = envelope(profile["x"].values, profile.values, _COLUMNS)
         z = 1e6 * (z - np.nanmean(z))
@@ -146,7 +146,7 @@ def _spectrum(name: str, psd: xr.Dataset, colour: int) -> list[Series]:
         (origin != _MEASURED, "dashed"),
     )
     for part, style in styles:
-        # parts overlap by one point, so that there is no gap
+        # parts overlap by one point, which leaves no gap between them
         joined = part | (np.roll(part, 1) & (np.arange(q.size) > 0) & (style == "dashed"))
         joined |= np.roll(part, -1) & (np.arange(q.size) < q.size - 1) & (style == "dashed")
         if part.any():
@@ -161,7 +161,7 @@ def _spectrum(name: str, psd: xr.Dataset, colour: int) -> list[Series]:
 
 @plotted()
 def modulus(table: xr.Dataset) -> FigureSpec:
-    """Draw storage and loss modulus over the angular frequency.
+    """Draw storage and loss modulus over angular frequency.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def modulus(table: xr.Dataset) -> FigureSpec:
     surface = str(table.attrs.get("surface", ""))
     values = {name: table[f"{name}_modulus"].values / 1e6 for name in ("storage", "loss")}
     kept = {name: np.where(value > 0, value, np.nan) for name, value in values.items()}
-    # one rubber: lines differ by quantity, not by surface
+    # a figure of one rubber: lines differ by quantity, not by surface
     return FigureSpec(
         title="Modulus of the rubber",
         panels=(Panel(axis_of("angular_frequency", log=True), Axis("modulus", "MPa", log=True)),),
@@ -199,7 +199,7 @@ def modulus(table: xr.Dataset) -> FigureSpec:
 
 @plotted()
 def viscoelastic(frictions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw the viscoelastic friction coefficient over the sliding speed.
+    """Draw the viscoelastic friction coefficient over sliding speed.
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ def viscoelastic(frictions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -
 
 
 def shaded_loads(series: Sequence[Series]) -> tuple[Series, ...]:
-    """Return series with a shade for each load, dark for the lowest; those without keep theirs."""
+    """Return series shaded by load, dark for the lowest; series without a load stay unchanged."""
     loads = sorted({one.load for one in series if one.load is not None})
     return tuple(
         one if one.load is None else replace(one, shade=shade_of(loads.index(one.load), len(loads)))

@@ -1,4 +1,4 @@
-"""Figure of a run over time and distance."""
+"""Figure of the friction of a run over time and over distance."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
 
-_COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
+_COLUMNS = 420  # pixel columns of a double-column panel, two per typographic point
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
 # colours of directions, distinct from those of surfaces
 SHADES = {1: (GREY, "forward"), -1: (ORANGE, "backward"), 0: (SKY, "direction unknown")}
 MEAN = VERMILLION
-_MAX_MARKED = 60  # most segments that are shaded one by one
+_MAX_MARKED = 60  # largest number of segments that are shaded one by one
 _ROOM = 0.2  # space above a trace, as share of its range
 
 
 def friction_axis(name: str) -> Axis:
-    """Return the axis of the friction coefficient, or of the force, of a run."""
+    """Return the axis of the friction coefficient or friction force of a run."""
     if name == "friction_coefficient":
         paper = "friction coefficient\n" + r"$\mu = F_x/F_{\mathrm{N}}$"
         return Axis("friction coefficient µ", paper=paper, column=name)
@@ -77,7 +77,7 @@ def trace(
     time_axis = axis_of("time", "time")
     motion = next((n for n in _MOTION if n in run and np.ptp(np.asarray(run[n], float)) != 0), "")
     y = friction_axis(signal.name)
-    if parts:  # space for the speeds above the trace
+    if parts:  # space for the speeds, which are written above the trace
         low, high = np.nanmin(signal.values), np.nanmax(signal.values)
         y = replace(y, include=(float(high + _ROOM * (high - low)),))
     panels = [Panel(time_axis, y, name="time")]
@@ -118,7 +118,7 @@ def trace(
 
 
 def _motion_axis(name: str, values: np.ndarray, segments: xr.Dataset | None) -> Axis:
-    """Return the axis of a motion: logarithmic down to the slowest segment."""
+    """Return the axis of a motion signal, logarithmic down to the slowest segment."""
     largest = float(np.nanmax(np.abs(values), initial=0.0))
     speeds = np.zeros(0) if segments is None else np.asarray(segments["sliding_speed"], float)
     speeds = speeds[np.isfinite(speeds) & (speeds > 0)]
@@ -131,7 +131,7 @@ Span = tuple[float, float]
 
 
 def _stretch(number: int, segments: xr.Dataset) -> tuple[Span, Span]:
-    """Return start and stop of a segment, whole and trimmed."""
+    """Return the start and stop of a whole segment, and of its trimmed part."""
     row = segments.isel(segment=number)
     ends = [float(row[n]) for n in ("start", "stop", "trimmed_start", "trimmed_stop")]
     return (ends[0], ends[1]), (ends[2], ends[3])
@@ -140,7 +140,7 @@ def _stretch(number: int, segments: xr.Dataset) -> tuple[Span, Span]:
 def _shaded(
     parts: Sequence[Stroke], places: Sequence[tuple[Span, Span]], panel: int, *, named: bool
 ) -> list[Mark]:
-    """Return the shading of the segments: dark, with light trimmed ends; of many, together."""
+    """Return the shading of segments (dark, trimmed ends light); many segments are merged."""
     marks = []
     last = ""
     every = max(1, -(-len(parts) // _MAX_MARKED))
@@ -167,7 +167,7 @@ def _means(
     parts: Sequence[Stroke], spans: Sequence[Span], signal: Signal, friction: xr.Dataset | None,
     panel: int,
 ) -> list[Series]:  # fmt: skip
-    """Return the mean of each segment with the sign of its stroke."""
+    """Return a line at the mean of each segment, with the sign of its stroke."""
     if friction is None or signal.name not in friction or not parts:
         return []
     mean = np.asarray(friction[signal.name], float)[[part.number for part in parts]]
