@@ -423,7 +423,7 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
     ]
     rows = [ModelRow(model=one, fit={"shear_stress_Pa": -1.0}, curve=()) for one in models]
     (spec,) = (one for one in model_specs(rows, ["Sb-S"], tmp_path) if one.series)
-    assert "No shear stress describes this curve" in spec.note and "full:" not in spec.note
+    assert "No shear stress describes this curve" in spec.note and "solid line:" not in spec.note
     assert "dotted: the model's viscous part" in spec.note and spec.loads == [31.0, 91.0]
     assert not any(series.label == "model" for series in spec.series)
 

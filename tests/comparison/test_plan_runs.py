@@ -106,7 +106,7 @@ def test_a_goal_out_of_reach_is_no_success_and_a_goal_in_reach_is_named(tmp_path
     table = pilot_table(np.random.default_rng(3), 4, 0.01)
     plan = tl.comparison.measuring_plan(table, standard_error=1e-5)
     text = plan_text(plan)
-    assert text.startswith("standard error of 1e-05: out of reach at 1 of 1 point")
+    assert text.startswith("standard error of 1e-05: not achievable at 1 of 1 point")
     within = float(text.split("10 runs reach ")[1].split(". ")[0])
     assert tl.comparison.measuring_plan(table, standard_error=1.1 * within).table.runs.max() <= 20
     assert 'class="banner incomplete"' in write_plan(plan, "p", tmp_path).read_text("utf-8")
@@ -117,7 +117,7 @@ def test_a_goal_out_of_reach_is_no_success_and_a_goal_in_reach_is_named(tmp_path
 
 def test_a_plan_asks_for_one_precision_and_for_two_runs(tmp_path):
     table = pilot_table(np.random.default_rng(3), 4, 0.01)
-    with pytest.raises(tl.TribolabError, match="say one precision"):
+    with pytest.raises(tl.TribolabError, match="state one precision"):
         tl.comparison.measuring_plan(table, standard_error=0.1, half_interval=0.1)
     with pytest.raises(tl.TribolabError, match="no condition and speed has two runs"):
         tl.comparison.measuring_plan(table.head(1), standard_error=0.1)
@@ -129,7 +129,7 @@ def test_the_command_plans_after_a_campaign(original, tmp_path):
     words = ["lab", "plan", str(original.parent / "results"), "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(cli.app, [*words, "--half-interval", "0.02"])
     assert done.exit_code == 0, done.output
-    assert "as likely as not to reach it" in done.stdout
+    assert "reach it with a chance of 50 %" in done.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"plan.html", "plan.csv"}
     old = CliRunner().invoke(cli.app, [*words[1:], "--standard-error", "0.01"])
     assert old.exit_code == 0 and "write 'tribolab lab plan'" in old.stderr

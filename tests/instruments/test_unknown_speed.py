@@ -192,7 +192,7 @@ def test_every_objection_is_printed_with_its_reason_and_at_most_a_handful(togeth
     assert len(lines) == 3
     for run, line in zip(together.runs, lines, strict=True):
         assert line.startswith(f"suspect: {run.name}: ")
-        assert "segment_speed: the speed of 2 of 2 segments is unknown" in line
+        assert "segment speed: the speed of 2 of 2 segments is unknown" in line
     many = replace(together, runs=4 * together.runs)
     lines = [line for line in terminal.outcome_lines(many) if "suspect" in line]
     assert len(lines) == 6

@@ -282,7 +282,10 @@ def _reasons_of_run(run: RunOutcome, outcome: Outcome) -> str:
 def _reasons(rows: Iterable[Mapping[str, Any]], status: str) -> str:
     """Return the checks with this status, and their messages."""
     mine = [row for row in rows if row["status"] == status and not row.get("decision")]
-    texts = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
+    texts = [
+        (f"{row['check'].replace('_', ' ')}: {row.get('scan', '')} {row['message']}")
+        for row in mine
+    ]
     return "".join(f": {' '.join(text.split())}" for text in ["; ".join(texts)] if text)
 
 

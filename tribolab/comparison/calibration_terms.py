@@ -17,8 +17,8 @@ from tribolab.metrology.budget_parts import BETWEEN, NOISE, part_words
 RunNames = tuple[str, ...]
 
 _NOT_STATED = (
-    "no calibration is stated: the intervals hold the scatter of the runs only, and instruments "
-    "that read differently would differ"
+    "no calibration is stated: the intervals include only the scatter of the runs, so a "
+    "difference between instruments may be a calibration error"
 )
 
 

@@ -87,23 +87,24 @@ def _parts(compared: Comparison, end: str) -> list[Part]:
     meaning = f": {second} less {first}" if end else ""
     drawn = Picture(
         plot.differences(compared.points, title=f"{second} less {first}"),
-        "Difference of the friction coefficient over speed, relative to the first; bars hold all "
-        "differences together with 95 %; filled points differ.",
+        "Difference of the friction coefficient over speed, relative to the first. Bars: "
+        "simultaneous 95 % intervals for all differences. Filled points differ significantly.",
         f"Relative difference of friction between {first} and {second} over speed.",
     )
     wood = Picture(
         plot.forest(compared.quantities, names=compared.names),
-        "Numbers of whole conditions and surfaces; each bar for itself, 95 % thin and 90 % thick.",
+        "Results of whole conditions and surfaces. Each bar is a separate interval: thin 95 %, "
+        "thick 90 %.",
         f"Relative differences between {first} and {second}, a row for each number.",
     )
     plainly = (
-        "Different: the two differ at this speed by more than chance explains. Of campaigns that "
-        "do not differ, one in twenty has a point that is called so."
+        "Different: the difference at this speed is significant. If nothing differs, one "
+        "comparison in twenty still contains such a point."
         if compared.calibration
-        else "No chance is in these differences, as the raw data are the same."
+        else "These differences have no random error, because the raw data are the same."
     )
     margin = (
-        f"Equivalent means: the 90 % interval of the point alone lies within {compared.margin}."
+        f"Equivalent means: the 90 % interval of the point alone is within {compared.margin}."
         if compared.margin
         else "No margin is stated, so nothing can be called equivalent: undecided means that no "
         "difference was proved, not that the two are equal."

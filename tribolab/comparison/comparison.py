@@ -311,17 +311,21 @@ def margin_of(margin: str, values: np.ndarray) -> np.ndarray | None:
 
 
 _HOW = {
-    PERMUTATION: "whole runs are exchanged between the groups; the largest difference over its "
-    "error among a condition's points shows what chance can do",
-    ROTATION: "the scatter of the runs, turned at random, shows what chance can do at the points "
-    "of a condition together, supposing that runs are normally distributed",
-    BONFERRONI: "Bonferroni's rule, where runs are few and lack speeds",
+    PERMUTATION: (
+        "whole runs are permuted between the groups; the threshold is the largest difference "
+        "divided by its error that occurs by chance at the points of a condition"
+    ),
+    ROTATION: (
+        "the residuals of the runs are rotated at random, which gives the threshold for all "
+        "points of a condition, if runs are normally distributed"
+    ),
+    BONFERRONI: "Bonferroni's rule, for few runs with missing speeds",
 }
 
 
 def _method(compared: Differences | None, conditions: int, pairs: int) -> str:
     if compared is None:
-        return "the raw data are the same: what differs, the analysis changed"
+        return "the raw data are the same, so every difference comes from the analysis"
     points = int(np.isfinite(compared.p_value).sum())
     how = "; ".join(_HOW[name] for name in dict.fromkeys(compared.methods))
     others = f" and {pairs} comparisons" if pairs > 1 else ""

@@ -100,8 +100,8 @@ def _summary(history: History) -> Part:
         "summary",
         "All charts",
         texts=(
-            "Each campaign is one point. The first ones define the usual range; a later one "
-            "signals if it, or several together, lie further off than chance explains "
+            "Each campaign is one point. The first ones are the baseline. A later point is a "
+            "signal if it, or a series of points, deviates significantly "
             f"(rules: {', '.join(history.rules)}).{_chance_text(history)}",
             *due,
             *unread,

@@ -126,10 +126,10 @@ def measuring_plan(
     ([7.0], [14.0])
     """
     if (standard_error is None) == (half_interval is None):
-        raise AnalysisError("say one precision: a standard error, or half a 95 % interval")
+        raise AnalysisError("state one precision: a standard error, or half a 95 % interval")
     goal = standard_error if standard_error is not None else half_interval
     if goal is None or not goal > 0:
-        raise AnalysisError(f"a precision of {goal}: it has to be above zero")
+        raise AnalysisError(f"a precision of {goal}: it must be above zero")
     if not 0.5 <= assurance < 1:
         raise AnalysisError(
             f"an assurance of {assurance:g}: it is a chance from 0.5 to below 1, e.g. 0.8"
@@ -220,13 +220,13 @@ def plan_text(plan: MeasuringPlan) -> str:
     beyond = int(table["runs"].isna().sum())
     if beyond:
         return (
-            f"{plan.goal}: out of reach at {beyond} of {many(len(table), 'point')}, where more "
+            f"{plan.goal}: not achievable at {beyond} of {many(len(table), 'point')}, where more "
             f"than {MOST_RUNS} runs are needed. {_missing(plan)}"
         )
     sure = f"{100 * plan.assurance:.0f} %"
     return (
-        f"{plan.goal}: {_span(table['runs'])} as long as the pilot's are as likely as not to "
-        f"reach it, {_span(table['assured_runs'])} do so with a chance of {sure}; of the cheapest "
+        f"{plan.goal}: {_span(table['runs'])} as long as the pilot's reach it with a chance of 50 "
+        f"%, {_span(table['assured_runs'])} do so with a chance of {sure}; of the cheapest "
         f"sliding times {_span(table['cheapest_runs'])} and {_span(table['cheapest_assured_runs'])}"
     )
 

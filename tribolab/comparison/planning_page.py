@@ -20,8 +20,7 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
     drawn = Picture(
         plot.runs_needed(plan.table, title=plan.goal),
         "Filled: runs that slide as long as the pilot's; open: runs of the cheapest sliding time. "
-        "The marks are as likely as not to reach the goal, the ends of the bars do so with "
-        f"{sure}.",
+        "Symbols: 50 % chance to reach the goal; ends of the bars: {sure}.",
         "Number of runs over sliding speed.",
     )
     heads = (

@@ -78,7 +78,7 @@ def differences(points: pd.DataFrame) -> FigureSpec:
     y = Axis("relative difference", "%", linear_below=10.0 if reach > _MANIFOLD else None)
     return FigureSpec(
         title="Relative difference",
-        note="Bars contain all differences together (95 %); filled: different.",
+        note="Bars: simultaneous 95 % intervals for all differences; filled: different.",
         panels=(Panel(SPEED_AXIS, y, name="differences"),),
         series=tuple(series),
         marks=(Mark("y", 0.0),),

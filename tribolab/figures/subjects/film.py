@@ -131,8 +131,8 @@ def lubrication_factors(
     )
     return FigureSpec(
         title="Flow and friction factors",
-        note="Effect of roughness on the flow of the liquid (first panel: full, by pressure; "
-        "dashed, by shear) and on its friction (second panel: full, mean shear; dashed, "
+        note="Effect of roughness on the flow of the liquid (first panel: solid, by pressure; "
+        "dashed, by shear) and on its friction (second panel: solid, mean shear; dashed, "
         "roughness-induced pressure; dotted, pressure gradient). Where surfaces agree, their lines "
         "overlap.",
         panels=(

@@ -117,8 +117,9 @@ def mixed_curve(
              column=y.column)  # fmt: skip
     return FigureSpec(
         title="Measured friction and mixed lubrication",
-        note="Points: measured, with U95; full: model with the fitted shear stress; dashed: its "
-        "solid part; dotted: its viscous part; shaded: uncertainty of the model. Below: the "
+        note="Points: measured, with U95; solid line: model with the fitted shear stress; dashed: "
+        "contribution of the solid contact; dotted: viscous contribution; shaded: uncertainty "
+        "of the model. Below: the "
         "residuals with their 95 % uncertainty, including that of viscosity, speed, load, radius "
         "and modulus if stated."
         if modelled

@@ -111,7 +111,7 @@ def runs_needed(table: pd.DataFrame) -> FigureSpec:
     return FigureSpec(
         title="Runs needed",
         note="Filled: as long as the pilot's runs; open: of the cheapest sliding time. Bars: up to "
-        "the number that reaches the precision with assurance.",
+        "the number of runs with the stated assurance.",
         panels=(Panel(SPEED_AXIS, Axis("runs", include=(0.0,)), name="runs"),),
         series=tuple(series),
         keys=(Key("as long as the pilot", "points"), Key("cheapest time", "points", open=True)),

@@ -53,8 +53,8 @@ def undecided_trends(runs: Iterable[tuple[str, Sequence[Mapping[str, Any]], str]
     >>> row = {"friction_coefficient": 0.8, "trend_p_value": 0.36, "effective_samples": 2.8}
     >>> short = [row | {"trend_change": change} for change in (-0.16, 0.0)]
     >>> undecided_trends([("a", short, "friction_coefficient")])
-    'Trend undecided in 1 of 2 segments, at most −20 % along one (run a): too short a record to \
-tell drift from noise'
+    'Trend undecided in 1 of 2 segments, at most −20 % along one (run a): the record is \
+too short to distinguish drift from noise'
     """
     number = total = 0
     largest, where = 0.0, ""

@@ -54,7 +54,7 @@ report.reviewing = (() => {
     made.append(name, ` ${one.state === "withdrawn" ? "no longer: " : ""}${one.action}, ${where}: ${one.reason} (${one.author}, ${one.date}) `);
     if (one.state === "pending") {
       const back = document.createElement("button");
-      Object.assign(back, { type: "button", textContent: "Take back" });
+      Object.assign(back, { type: "button", textContent: "Withdraw" });
       back.addEventListener("click", () => book.take(one));
       made.append(back);
     }

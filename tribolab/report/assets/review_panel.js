@@ -3,7 +3,7 @@
 report.ReviewPanel = (() => {
   const WORDS = { reject: "rejected", accept: "accepted", bounds: "new bounds", note: "noted" };
   const SIGNS = { reject: "✕", accept: "✓", bounds: "↔", note: "✎" };
-  const STATES = { applied: "", waiting: "not in these results", pending: "pending", withdrawn: "to be taken out" };
+  const STATES = { applied: "", waiting: "not yet in the results", pending: "pending", withdrawn: "withdrawn" };
   const brief = (time) => String(Number(time.toPrecision(6)));
   const today = () => {
     const now = new Date();
@@ -206,7 +206,7 @@ report.ReviewPanel = (() => {
       made.className = `${one.state} ${one.action}`;
       made.tabIndex = -1;
       text.textContent = `${SIGNS[one.action]} ${this.nameOf(one.segment)} ${this.tells(one)}${this.moved(one)}`;
-      const back = one.state === "withdrawn" ? button("Leave it in", "restore", `Leave in: ${text.textContent}`) : button("Take back", "take", `Take back: ${text.textContent}`);
+      const back = one.state === "withdrawn" ? button("Restore", "restore", `Restore: ${text.textContent}`) : button("Withdraw", "take", `Withdraw: ${text.textContent}`);
       back.one = one;
       made.append(text, " ", back);
       return made;

@@ -9,7 +9,7 @@ GLOSSARY: dict[str, str] = {
     "U95. It includes the scatter of the data, the repeats if there are any, and the calibration "
     "uncertainty if it was given. Without a calibration it is statistical only.",
     "within the run": "U95 from the scatter within one run; correlated samples count less, and "
-    "the two strokes of a half loop count once. Repeatability is not included.",
+    "the two strokes of a half loop count as one observation. Repeatability is not included.",
     "between runs": "U95 from the scatter of repeated runs of the same surface, medium and load. "
     "Few runs widen it (Student's t).",
     "Standard error": "Standard error of the mean (coverage 68 %), for the tables and the fits.",

@@ -338,7 +338,7 @@ def _events(opened: Sequence[_Opened]) -> FigureSpec:
         "sliding",
         "Size of the drops",
         "Cumulative distribution of the drops of µ, all speeds of a run together. "
-        + distinguish_media(_media(opened), "full", "dashed"),
+        + distinguish_media(_media(opened), "solid line", "dashed"),
         "Cumulative distribution of the drops of friction.",
         (Panel(Axis("drop of µ", log=True), Axis("share of drops below")),),
         tuple(series),
