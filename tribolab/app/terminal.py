@@ -294,7 +294,7 @@ def _computed(outcome: Outcome) -> str:
     words = {"psd": "spectrum", "contact": "contact", "adhesion": "adhesion"}
     parts = {part for surface in outcome.surfaces for part in surface.parts}
     return ", ".join(word for part, word in words.items() if part in parts) or (
-        "roughness" if parts else "nothing"
+        "roughness" if parts else "no results"
     )
 
 

@@ -20,12 +20,15 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
     drawn = Picture(
         plot.runs_needed(plan.table, title=plan.goal),
         "Filled: runs that slide as long as the pilot's; open: runs of the cheapest sliding time. "
-        "Symbols: 50 % chance to reach the goal; ends of the bars: {sure}.",
+        f"Symbols: 50 % chance to reach the goal; ends of the bars: {sure}.",
         "Number of runs over sliding speed.",
     )
     heads = (
         "Condition", "Speed", "Mean", "Within a run", "Memory (s)", "Between runs", "Pilot runs",
-        "Sliding time", "Runs, half sure", f"Runs, {sure} sure", "In all, sure", "Cheapest sliding",
+        "Sliding time", (
+            "Runs, half "
+            "sure"
+        ), f"Runs, {sure} sure", "In all, sure", "Cheapest sliding",
         "Runs, half sure", f"Runs, {sure} sure", "In all, sure",
     )  # fmt: skip
     names = ("mean", "within_std", "autocorrelation_time_s", "between_runs_std")
