@@ -25,10 +25,7 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
     )
     heads = (
         "Condition", "Speed", "Mean", "Within a run", "Memory (s)", "Between runs", "Pilot runs",
-        "Sliding time", (
-            "Runs, half "
-            "sure"
-        ), f"Runs, {sure} sure", "In all, sure", "Cheapest sliding",
+        "Sliding time", "Runs, half sure", f"Runs, {sure} sure", "In all, sure", "Cheapest sliding",
         "Runs, half sure", f"Runs, {sure} sure", "In all, sure",
     )  # fmt: skip
     names = ("mean", "within_std", "autocorrelation_time_s", "between_runs_std")
