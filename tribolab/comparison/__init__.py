@@ -1,4 +1,4 @@
-"""Comparison of results folders, history of instruments, and planning."""
+"""Comparison of results folders, history of instruments, and planning of measurements."""
 
 from __future__ import annotations
 

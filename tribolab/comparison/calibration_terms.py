@@ -1,4 +1,4 @@
-"""Calibration errors of a difference between two sides, shared or not."""
+"""Calibration errors of the difference between two sides of a comparison, shared or not."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _NOT_STATED = (
 
 @dataclass(frozen=True)
 class _Part:
-    """Input of one side; two sides with the same input share its error."""
+    """Calibration input of one side; if both sides have the same one, they share its error."""
 
     name: str
     whose: str
@@ -32,7 +32,7 @@ class _Part:
 
 @dataclass(frozen=True)
 class CalibrationTerms:
-    """Calibration errors of the differences in one condition.
+    """Calibration errors of the differences between two sides in one condition.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class CalibrationTerms:
 def calibration_terms(
     condition: MatchedRuns, first: Folder | None, second: Folder | None
 ) -> CalibrationTerms:
-    """Return calibration errors of the differences in a condition that scatter does not include.
+    """Return the calibration errors of the differences that the runs' scatter does not include.
 
     Parameters
     ----------
@@ -96,12 +96,12 @@ def calibration_terms(
 
 
 def _rows(row: np.ndarray, size: int) -> np.ndarray:
-    """Return a term that is fully correlated between points, or one term per point."""
+    """Return a term that is fully correlated between points, or one term for each point."""
     return row.reshape(-1, size)
 
 
 def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
-    """Return the instrument and calibration of some runs."""
+    """Return the instruments and calibrations with which some runs were measured."""
     stated = None if folder.campaign is None else folder.campaign.calibration
     which = "" if stated is None else f"{stated.date} {stated.serial} {stated.certificate}"
     names = {str(run.get("instrument", "")) for run in folder.done if run["name"] in runs}
@@ -111,7 +111,7 @@ def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
 def _side_inputs(
     folder: Folder, runs: RunNames, speeds: np.ndarray, together: bool
 ) -> dict[_Part, np.ndarray]:
-    """Return the inputs of one side with the effects of their standard uncertainties (point)."""
+    """Return the inputs of one side, each with its effect on the friction at every point."""
     table = folder.table("uncertainty_budget")
     if table is None or "varies" not in table:
         return {}
@@ -137,7 +137,7 @@ _EACH_POINT = tuple(map(part_words, EACH_POINT))
 
 
 def _origin(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
-    """Return the identity of the calibration or mount with which an input varies."""
+    """Return which calibration or mount an input belongs to."""
     made = {}
     known = _calibrations(folder, runs)
     for whose in known:
@@ -152,7 +152,7 @@ def _origin(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]
 
 
 def _values_at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
-    """Return contributions at the speeds of a comparison; 0 for speeds missing in the curve."""
+    """Return contributions at the compared speeds; 0 at speeds that the curve lacks."""
     known = rows[SPEED_COLUMN].to_numpy(dtype=float)
     apart = np.abs(np.log(known[:, None] / speeds))
     nearest = apart.argmin(axis=0)
@@ -161,7 +161,7 @@ def _values_at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
 
 
 def terms_text(made: Sequence[CalibrationTerms]) -> str:
-    """Return text on the errors included in addition to the scatter of the runs."""
+    """Return a text on the errors that are included in addition to the scatter of the runs."""
     shared = tuple(dict.fromkeys(name for terms in made for name in terms.shared))
     own = tuple(dict.fromkeys(name for terms in made for name in terms.own if name not in shared))
     if not shared and not own:

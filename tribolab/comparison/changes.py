@@ -10,12 +10,12 @@ from tribolab.comparison.folder import Folder
 from tribolab.core.untyped import Json
 from tribolab.core.wording import number
 
-_NAMED_BY = {"run": "files", "surface": "name"}  # keys that identify the entries of a list
+_NAMED_BY = {"run": "files", "surface": "name"}  # key that identifies the entries of a list
 
 
 @dataclass(frozen=True)
 class Change:
-    """One change: its kind, what changed, and both values."""
+    """One change: its kind, the item that changed, and both values."""
 
     kind: str
     what: str
@@ -24,7 +24,7 @@ class Change:
 
 
 def changes_between(first: Folder, second: Folder) -> list[Change]:
-    """Return the changes between the settings, decisions, code and raw data of two results."""
+    """Return the changes of settings, decisions, code and raw data between two results."""
     return [
         *_settings(first, second),
         *_decisions(first, second),
@@ -39,7 +39,7 @@ def _settings(first: Folder, second: Folder) -> list[Change]:
 
 
 def _flat_settings(folder: Folder) -> dict[str, str]:
-    """Return every key that the campaign file sets or leaves at its default, in SI."""
+    """Return the values of all keys of the campaign file, including defaults, in SI."""
     if folder.campaign is None:
         return {"the campaign file": f"as of {folder.report['campaign']['sha256'][:12]}"}
     return dict(_flat(folder.campaign.model_dump(mode="json"), ""))

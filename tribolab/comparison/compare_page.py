@@ -1,4 +1,4 @@
-"""Page and tables of a comparison."""
+"""Web page and tables of a comparison."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def comparison_verdict(compared: Comparison) -> str:
 
 
 def _open_to(compared: Comparison) -> str:
-    """Return text on the largest possible difference if no difference was proved."""
+    """Return a text on the largest difference still possible if none was proved."""
     rows = compared.points[compared.points["verdict"] == OPEN]
     reach = rows[["low", "high"]].abs().max(axis=1) / rows["first"].abs()
     if not np.isfinite(reach).any():
@@ -54,7 +54,7 @@ def _open_to(compared: Comparison) -> str:
 
 
 def write_comparisons(compared: Sequence[Comparison], folder: Path) -> Path:
-    """Write ``compare.html``, and a table of points and one of numbers for each pair.
+    """Write ``compare.html``, and two tables for each pair: points, and whole conditions.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Comparison of two campaigns, surfaces or media, with significance."""
+"""Comparison of two campaigns, surfaces or media, with tests of significance."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ from tribolab.units.conversion import to_si
 
 UNCHANGED, CHANGED = "unchanged", "changed by the analysis"
 _LEVEL, _EQUIVALENCE_LEVEL = 0.95, 0.90
-_EXACT = 1e-12  # relative; equal analyses of equal raw data agree to rounding
+_EXACT = 1e-12  # relative; repeated analyses of the same raw data agree to rounding
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Differences between two groups of runs.
+    """Differences between two groups of runs, with their significance.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def compare(
     margin: str = "",
     pairs: int = 1,
 ) -> Comparison:
-    """Compare two campaigns, or two surfaces or media within one.
+    """Return the differences between two campaigns, or two surfaces or media within one.
 
     Each run is one observation at a speed: the mean of its strokes.
 
@@ -195,7 +195,7 @@ def compare(
 
 
 def _all_same(condition: MatchedRuns, first: Side, second: Side) -> bool:
-    """Whether both sides of a condition come from the same raw files."""
+    """Return whether both sides of a condition were computed from the same raw files."""
     if first.folder is None or second.folder is None or first.folder is second.folder:
         return False
     sums = [side.folder.checksums() if side.folder else {} for side in (first, second)]
@@ -207,7 +207,7 @@ def _all_same(condition: MatchedRuns, first: Side, second: Side) -> bool:
 
 
 def _points_of_same(condition: MatchedRuns) -> pd.DataFrame:
-    """Return the rows of a condition with equal raw data on both sides, without a test."""
+    """Return the points of a condition with the same raw data on both sides, without a test."""
     first, second = (np.nanmean(values, axis=0) for values in (condition.first, condition.second))
     return _rows(
         condition,
@@ -297,7 +297,7 @@ def _rows(
 
 
 def margin_of(margin: str, values: np.ndarray) -> np.ndarray | None:
-    """Return the stated margin in absolute terms, from an absolute or relative value.
+    """Return the equivalence margin as an absolute value, from an absolute or relative one.
 
     Raises
     ------

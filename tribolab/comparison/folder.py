@@ -1,4 +1,4 @@
-"""Contents of a results folder: settings, runs, files and their checksums."""
+"""Contents of a results folder: settings, runs, tables, and checksums of raw files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REPORT = "report.json"
 
 @dataclass(frozen=True)
 class Folder:
-    """Results folder, with its report and, on demand, its tables.
+    """Results folder, with its report, and tables that are read on demand.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Folder:
 
     @property
     def name(self) -> str:
-        """Name of the folder; that of its campaign if the folder has the default name."""
+        """Name of the folder; the campaign's name if the folder has the default name."""
         resolved = self.path.resolve()
         return resolved.parent.name if resolved.name == "results" else resolved.name
 
@@ -49,7 +49,7 @@ class Folder:
 
     @functools.cached_property
     def campaign(self) -> Campaign | None:
-        """Campaign file at the time of the analysis; None if this version cannot read it."""
+        """Campaign file as it was at the analysis; None if this version cannot read it."""
         return _campaign(self.report["campaign"]["text"])
 
     @property
@@ -59,16 +59,16 @@ class Folder:
 
     @property
     def done(self) -> list[Json]:
-        """Runs with results, as in the report."""
+        """Runs that have results, as listed in the report."""
         return [run for run in self.report["runs"] if run["status"] == "done"]
 
     @property
     def counting(self) -> set[str]:
-        """Names of the runs used in the measured curves."""
+        """Names of the runs that the measured curves include."""
         return {name for curve in self.report["curves"] for name in curve["runs"]}
 
     def checksums(self) -> dict[str, tuple[str, ...]]:
-        """Return the checksums of the raw files of each run."""
+        """Return the checksums of the raw files, by run."""
         known = {source["file"]: source["sha256"] for source in self.report["sources"]}
         return {
             run["name"]: tuple(sorted(known.get(file, "") for file in run["files"]))
@@ -77,7 +77,7 @@ class Folder:
 
     @property
     def segments(self) -> list[Json]:
-        """Segments of all runs that have results, with run, surface, medium and nominal load."""
+        """Segments of all runs with results: run, surface, medium, nominal load and friction."""
         labels = ("surface", "medium", "nominal_normal_force_N")
         return [
             {"run": run["name"], **{label: run[label] for label in labels}, **row}
@@ -86,14 +86,14 @@ class Folder:
         ]
 
     def friction(self) -> pd.DataFrame:
-        """Return the segments of all runs as a table.
+        """Table of the friction of all segments.
 
         Raises
         ------
         AnalysisError
             If there are no segments.
         """
-        # imported late for a quick start
+        # imported late: pandas loads slowly
         import pandas as pd
 
         if not (rows := self.segments):
@@ -101,8 +101,8 @@ class Folder:
         return pd.DataFrame(rows)
 
     def table(self, name: str) -> pd.DataFrame | None:
-        """Return a table by name; None if it does not exist."""
-        # imported late for a quick start
+        """Return a table by its name; None if the folder does not contain it."""
+        # imported late: pandas loads slowly
         from tribolab.report import tables
 
         path = self.path / "tables" / f"{name}.csv"
@@ -111,17 +111,17 @@ class Folder:
 
 @functools.lru_cache(maxsize=8)
 def _campaign(text: str) -> Campaign | None:
-    """Read a campaign file, cached because archives often repeat it."""
+    """Return a campaign file, cached because the folders of an archive often repeat it."""
     try:
         content = tomllib.loads(text)
-        move_keys(content)  # results of the last release
+        move_keys(content)  # keys that were renamed since the last release
         return Campaign.model_validate(content, context={"in_file": True})
     except (ValueError, RecursionError):
         return None
 
 
 def open_folder(path: str | Path) -> Folder:
-    """Read the report of a results folder.
+    """Return a results folder, after reading its report.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Page and table of an instrument's history."""
+"""Web page and table of an instrument's history."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def history_verdict(history: History) -> str:
 
 
 def _name(chart: InstrumentHistory, history: History) -> str:
-    """Return the name of the quantity, with the instrument if there are several."""
+    """Return the name of the quantity, and of the instrument if there are several."""
     several = len({other.instrument for other in history.charts}) > 1
     return f"{chart.instrument}: {chart.quantity}" if several else chart.quantity
 
@@ -64,7 +64,7 @@ def write_history(history: History, folder: Path) -> Path:
 
 
 def _order_charts(history: History) -> list[InstrumentHistory]:
-    """Return the charts: those that signal first, those without verdict last."""
+    """Return the charts in order: first those that signal, last those without a verdict."""
     return sorted(history.charts, key=lambda chart: (not chart.signals.size, chart.chart is None))
 
 
@@ -111,7 +111,7 @@ def _summary(history: History) -> Part:
 
 
 def _chance_text(history: History) -> str:
-    """Return text on how often any chart would signal without a change."""
+    """Return a text on how often some chart would signal although nothing changed."""
     judged = [chart for chart in history.charts if chart.chart is not None]
     if not judged:
         return ""

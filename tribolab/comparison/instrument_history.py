@@ -1,4 +1,4 @@
-"""History of an instrument: control charts from its results folders."""
+"""History of an instrument: control charts from the results folders of many campaigns."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ from tribolab.metrology.run_length import (
     signal_probability,
 )
 
-_BASELINE = 20  # points of the baseline, if at least as many follow
+_BASELINE = 20  # length of the baseline, if at least as many points follow
 _DAY = 86400.0
 
 
 @dataclass(frozen=True)
 class InstrumentHistory:
-    """History of one quantity of one instrument.
+    """History of one quantity of one instrument, as a control chart.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class InstrumentHistory:
         return self.baseline_points + np.flatnonzero(self.chart.any_signal)
 
     def table(self) -> pd.DataFrame:
-        """Return the table of the points, with limits and the rules by which they signal."""
+        """Return the table of the points, with control limits and the rules that signal."""
         count, start = self.values.size, self.baseline_points
         rules = np.full(count, "", dtype=object)
         columns = {name: np.full(count, np.nan) for name in _COLUMNS}
@@ -111,7 +111,7 @@ _COLUMNS = ("low", "high", "smoothed", "smoothed_low", "smoothed_high")
 
 @dataclass(frozen=True)
 class History:
-    """History of instruments from results folders.
+    """Control charts of several quantities and instruments.
 
     Parameters
     ----------
@@ -132,11 +132,11 @@ class History:
 
     @property
     def signalling(self) -> tuple[InstrumentHistory, ...]:
-        """Charts in which a point signals."""
+        """Charts in which at least one point signals."""
         return tuple(chart for chart in self.charts if chart.signals.size)
 
     def _repr_html_(self) -> str:
-        """Return the charts in which a point signals, and the folders not read, as HTML."""
+        """Return HTML of the charts that signal, and of the folders that could not be read."""
         entries = [
             (f"{c.instrument}, {c.quantity}", f"{many(c.signals.size, 'point')} signal")
             for c in self.signalling
@@ -145,7 +145,7 @@ class History:
         return html_list(many(len(self.charts), "chart"), entries)
 
     def table(self) -> pd.DataFrame:
-        """Return the table of the points of all charts."""
+        """Return one table of the points of all charts."""
         rows = [chart.table() for chart in self.charts]
         return pd.concat(rows, ignore_index=True) if rows else pd.DataFrame()
 
@@ -156,7 +156,7 @@ def history(
     rules: Sequence[str] = DEFAULT_RULES,
     baseline: int | None = None,
 ) -> History:
-    """Return the control charts of instruments over the results folders of many campaigns.
+    """Return the control charts of instruments, from the results folders of many campaigns.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def history_of(
     rules: Sequence[str] = DEFAULT_RULES,
     baseline: int | None = None,
 ) -> History:
-    """Return control charts of observations; arguments as for `history`."""
+    """Return the control charts of given observations; arguments as for `history`."""
     groups: dict[tuple[str, str, str], list[Observation]] = {}
     for point in sorted(group_by_speed(points), key=lambda point: (point.when, point.folder)):
         groups.setdefault((point.instrument, point.quantity, point.unit), []).append(point)
@@ -278,7 +278,7 @@ def _fields(
 
 
 def _due(stated: CalibrationTable, charts: Sequence[InstrumentHistory], instrument: str) -> Due:
-    """Return the date of the next calibration, from the stated interval or a reference's drift."""
+    """Return the date of the next calibration, from its interval or from the observed drift."""
     assert stated.date is not None
     interval = None if stated.interval is None else stated.interval / _DAY
     watched = [c for c in charts if c.instrument == instrument and c.quantity == GAIN]
@@ -298,7 +298,7 @@ def _due(stated: CalibrationTable, charts: Sequence[InstrumentHistory], instrume
 
 
 def expectations(chart: InstrumentHistory, rules: Sequence[str]) -> str:
-    """Return text on the rate of false alarms and the delay of true ones."""
+    """Return a text on the rate of false alarms, and on the delay of true ones."""
     if chart.chart is None:
         return chart.remark
     points, usual = chart.values.size - chart.baseline_points, chart.baseline_points

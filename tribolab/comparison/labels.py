@@ -1,4 +1,4 @@
-"""Labels of runs: operator, mount, day, specimen, and free labels.
+"""Labels of runs: operator, mount, day, specimen, and those that the user adds.
 
 Labels affect no result: they are read on demand, and adding one to the campaign file does not
 repeat the analysis.
@@ -20,7 +20,7 @@ from tribolab.comparison.folder import Folder, open_folder
 
 
 def labelled_segments(place: str | Path) -> pd.DataFrame:
-    """Return the table of friction of a campaign, with the labels of each row's run.
+    """Return the friction of all segments of a campaign, with the labels of their runs.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def labelled_segments(place: str | Path) -> pd.DataFrame:
     path = Path(place)
     campaign: Campaign | None = None
     if path.is_file() or (path / "campaign.toml").is_file():
-        # imported late for a quick start
+        # imported late: pandas loads slowly
         from tribolab.campaign.settings.load import load_campaign
 
         campaign = load_campaign(path)
@@ -53,7 +53,7 @@ def labelled_segments(place: str | Path) -> pd.DataFrame:
 
 
 def labels_of_runs(folder: Folder, campaign: Campaign | None) -> pd.DataFrame:
-    """Return the labels of the runs of a results folder, by the name of the run."""
+    """Return the labels of the runs in a results folder, by run."""
     rows = {}
     for run in folder.done:
         entry = _entry_of(campaign, run) if campaign is not None else None

@@ -1,4 +1,4 @@
-"""Page of texts, figures and tables in the common layout."""
+"""Web page with texts, figures and tables, in the layout common to all reports."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NARROW_MM = 120.0
 
 @dataclass(frozen=True)
 class Picture:
-    """Figure on the page, with its alternative text."""
+    """Figure on the page, with a text for those who cannot see it."""
 
     figure: Figure
     caption: str
@@ -31,13 +31,13 @@ class Picture:
 
     @property
     def wide(self) -> bool:
-        """Whether it takes the full width of the page."""
+        """Whether the figure takes the full width of the page."""
         return bool(self.figure.get_size_inches()[0] * 25.4 > _NARROW_MM)
 
     @property
     def address(self) -> str:
-        """Figure as a data URL."""
-        # imported late for a quick start
+        """Figure encoded as a data URL."""
+        # imported late: matplotlib loads slowly
         from tribolab.figures.look.style import svg
 
         return data_address(svg(self.figure))
@@ -45,7 +45,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class PageCell:
-    """Cell of a table: its text, and the number it is sorted by."""
+    """Cell of a table: its text, and the number by which it is sorted."""
 
     text: str
     value: float | None = None
@@ -53,7 +53,7 @@ class PageCell:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Table on the page: title, file name without ending, heads and rows."""
+    """Table on the page: title, file name without ending, column heads and rows."""
 
     label: str
     file: str
@@ -74,7 +74,7 @@ class Part:
 
 
 def cells(row: Iterable[object], digits: int = 3) -> list[PageCell]:
-    """Return the cells of a row: numbers rounded to so many digits, words unchanged.
+    """Return the cells of a row: numbers rounded to the given digits, texts unchanged.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def cells(row: Iterable[object], digits: int = 3) -> list[PageCell]:
 def write_parts(
     path: Path, *, kind: str, heading: str, verdict: str, fine: bool, parts: Sequence[Part]
 ) -> None:
-    """Write a self-contained HTML page.
+    """Write a self-contained HTML page of sections.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Planning of sliding time and repeats from the results of a pilot campaign."""
+"""Sliding time and number of repeats for a given precision, from a pilot campaign."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from tribolab.metrology.planning import (
 from tribolab.report.results_folder import Results
 
 _ASSURANCE = 0.8
-_TEN = 10  # number of runs for which the precision is listed
-LONGEST_STROKE = 20  # times the pilot's sliding time: longest stroke considered
+_TEN = 10  # number of runs for which the attainable precision is stated
+LONGEST_STROKE = 20  # longest sliding time considered, relative to the pilot's
 
 
 @dataclass(frozen=True)
 class MeasuringPlan:
-    """Numbers and durations of runs that reach a wanted precision.
+    """Number and duration of runs that reach a given precision.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class MeasuringPlan:
     is_interval: bool = False
 
     def _repr_html_(self) -> str:
-        """Return HTML of the goal and the table of runs."""
+        """Return HTML of the required precision and of the table of runs."""
         shown = self.table.to_html(index=False, float_format="{:.3g}".format)
         return f"<p><b>Runs for {html.escape(self.goal)}</b></p>{shown}"
 
@@ -80,7 +80,7 @@ def measuring_plan(
     assurance: float = _ASSURANCE,
     setup_time: float = 600.0,
 ) -> MeasuringPlan:
-    """Return the number and duration of runs needed for a precision at each speed.
+    """Return the number and duration of runs needed for a precision, at each speed.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def measuring_plan(
 def _pilots(
     pilot: pd.DataFrame | Results | str | Path,
 ) -> list[tuple[str, float, pd.DataFrame]]:
-    """Return condition, speed and runs for every combination with two or more runs."""
+    """Return condition, speed and runs of each pilot, which needs at least two runs."""
     if isinstance(pilot, pd.DataFrame):
         table, where = pilot, "table"
     else:
@@ -204,7 +204,7 @@ def _runs(segments: pd.DataFrame) -> pd.DataFrame:
 
 
 def _scatter(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
-    """Return the scatter of the runs, their sliding time, and their mean."""
+    """Return the scatter between and within runs, their sliding time, and their mean."""
     within = math.sqrt(float(runs["variance"].mean()))
     memory = float(np.nan_to_num(runs["memory"].mean()))
     sliding = float(runs["time"].median())
@@ -232,7 +232,7 @@ def plan_text(plan: MeasuringPlan) -> str:
 
 
 def _missing(plan: MeasuringPlan) -> str:
-    """Return text on the worst point, and the precision that ten runs reach there."""
+    """Return a text on the worst point, with the precision that ten runs would reach there."""
     rows = plan.table[plan.table["runs"].isna()].to_dict("records")
     scatter, worst = max(
         (
@@ -259,7 +259,7 @@ def _missing(plan: MeasuringPlan) -> str:
 
 
 def _span(runs: pd.Series) -> str:
-    """Return the smallest and largest feasible number of runs as text."""
+    """Return the smallest and largest attainable number of runs as text."""
     low, high = runs.min(), runs.max()
     if not math.isfinite(low):
         return "runs out of reach"

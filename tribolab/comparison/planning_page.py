@@ -1,4 +1,4 @@
-"""Page and table of a plan."""
+"""Web page and table of a measuring plan."""
 
 from __future__ import annotations
 
@@ -70,5 +70,5 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
 
 
 def _count(runs: float) -> int | str:
-    """Return the number of runs, or "out of reach" if it is infinite."""
+    """Return the number of runs as text, or "out of reach" if it is infinite."""
     return int(runs) if math.isfinite(runs) else "out of reach"

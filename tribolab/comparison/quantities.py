@@ -1,4 +1,4 @@
-"""Differences of quantities of whole conditions or surfaces, for a forest plot."""
+"""Differences of mean friction, shear stress and roughness, for a forest plot."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def quantity_rows(
     second: Mapping[str, pd.DataFrame],
     by: str = "",
 ) -> pd.DataFrame:
-    """Return mean friction, shear stress and roughness of both sides, with differences.
+    """Return mean friction, shear stress and roughness of both sides, with their differences.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def _row(
 
 
 def _mean_friction(condition: MatchedRuns, same: bool, terms: np.ndarray) -> list[object]:
-    """Return the row of mean friction over the speeds common to all runs, or to each run."""
+    """Return the mean friction over the speeds common to all runs, else over those of each run."""
     means = [np.nanmean(values, axis=1)[:, None] for values in (condition.first, condition.second)]
     everywhere = terms.mean(axis=1, keepdims=True)
     compared = differences_of_groups([(means[0], means[1])], not_in_scatter=[everywhere])
@@ -96,7 +96,7 @@ def _mean_friction(condition: MatchedRuns, same: bool, terms: np.ndarray) -> lis
 def _matched_rows(
     first: pd.DataFrame, second: pd.DataFrame, keys: Sequence[str]
 ) -> list[tuple[pd.Series, pd.Series]]:
-    """Return pairs of rows of two tables that agree in their common keys, each once."""
+    """Return pairs of rows of two tables with the same keys; each row of the first once at most."""
     result = []
     for _, row in first.iterrows():
         for _, other in second.iterrows():

@@ -1,4 +1,4 @@
-"""Repeatability of a friction coefficient within and between mounts, days, operators."""
+"""Repeatability of a friction coefficient, within and between mounts, days and operators."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from tribolab.metrology.reml import variance_components
 from tribolab.report.results_folder import Results
 
 _POOLED = "all speeds"
-FEW = 5  # levels of a factor below which its variance is very uncertain
+FEW = 5  # number of levels of a factor below which its variance is very uncertain
 
 
 @dataclass(frozen=True)
 class Repeatability:
-    """Variance components of a friction coefficient.
+    """Variance components of a friction coefficient: within and between mounts, days, operators.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Repeatability:
     levels: dict[str, int]
 
     def _repr_html_(self) -> str:
-        """Return HTML of the method and the table of components."""
+        """Return HTML of the method and of the table of components."""
         shown = self.table.to_html(index=False, float_format="{:.3g}".format)
         by = html.escape(", ".join(self.by))
         return f"<p><b>Repeatability by {by}</b>, {self.method}</p>{shown}"
@@ -69,7 +69,7 @@ class Repeatability:
 def repeatability(
     table: pd.DataFrame | Results | str | Path, by: str | Sequence[str], *, value: str = VALUE
 ) -> Repeatability:
-    """Separate the variance between equal runs from that between mounts, days ...
+    """Return the variance between equal runs, and that between mounts, days and operators.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def repeatability(
 
 
 def _per_run(segments: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
-    """Return the mean of each run at each speed, with its condition and factor levels."""
+    """Return the mean of each run at each speed, with its condition and its factor levels."""
     known = segments.copy()
     wanted = dict.fromkeys(part for name in names for part in name.split(":"))
     for part in wanted:
@@ -162,7 +162,7 @@ def _per_run(segments: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
 
 
 def _components_at(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float], str]:
-    """Return the components at one speed, and the method of estimation."""
+    """Return the variance components at one speed, and the method of their estimation."""
     for name in names:
         levels = runs[name].nunique()
         if levels < 2:
@@ -204,7 +204,7 @@ def _components_at(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, 
 
 
 def _scale_conditions(runs: pd.DataFrame) -> pd.Series:
-    """Return the values scaled to equal means of all conditions: relative scatter."""
+    """Return values scaled to equal means of all conditions, which keeps their relative scatter."""
     means = runs.groupby("condition")[VALUE].transform("mean")
     return runs[VALUE] / means.where(means != 0, 1.0) * runs[VALUE].mean()
 
@@ -233,7 +233,7 @@ def _row(
 
 
 def _balanced_cube(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | None:
-    """Return (condition, level, run) for a factor crossed equally with conditions; else None."""
+    """Return values (condition, level, run) of a balanced crossed factor; None if not balanced."""
     if len(names) != 1 or runs["condition"].nunique() < 2:
         return None
     groups = runs.groupby(["condition", names[0]])[VALUE]
@@ -246,7 +246,7 @@ def _balanced_cube(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | Non
 
 
 def _pool_speeds(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dict[str, object]:
-    """Return components for all speeds: relative variances, averaged by degrees of freedom."""
+    """Return the components pooled over all speeds, weighted by degrees of freedom."""
     table = pd.DataFrame(rows)
     weight = table["degrees_of_freedom"].to_numpy(dtype=float)
     columns = [c for c in map(str, table) if c.endswith(("_std", "_limit"))]
@@ -263,7 +263,7 @@ def _pool_speeds(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dic
 
 
 def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Return Mandel's h and k of each level of a factor with two or more runs in a condition."""
+    """Return Mandel's h and k of each level of a factor, in conditions with repeats."""
     rows = []
     conditions = runs[["condition", "level"]].drop_duplicates().sort_values(["condition", "level"])
     for condition, speed in conditions.itertuples(index=False, name=None):
@@ -281,7 +281,7 @@ def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
 
 
 def repeatability_verdict(study: Repeatability) -> str:
-    """Return the result of the study as one sentence."""
+    """Return the result of a repeatability study as one sentence."""
     last = study.table.iloc[-1]
     parts = [f"within {100 * last.repeatability_std:.2g} %"]
     for name in study.by:

@@ -1,4 +1,4 @@
-"""Page and tables of a repeatability study."""
+"""Web page and tables of a repeatability study."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def write_repeatability(study: Repeatability, heading: str, folder: Path) -> Pat
 
 
 def _explanations(study: Repeatability) -> tuple[str, ...]:
-    """Return text that explains r and R, and names factors with too few levels."""
+    """Return a text that explains the limits r and R, and names factors with too few levels."""
     last = study.table.iloc[-1]
     texts = [
         f"Of two runs that were measured alike, 95 of 100 pairs differ by less than "

@@ -1,4 +1,4 @@
-"""Friction of each run at each speed, the observations used to compare campaigns."""
+"""Friction of each run at each speed: the observations that are compared between campaigns."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tribolab.core.wording import force_text
 CONDITION = ["surface", "medium", "nominal_normal_force_N"]
 SPEED_COLUMN = "sliding_speed_m_s"
 VALUE = "friction_coefficient"
-TOLERANCE = 0.1  # relative difference of speeds that count as one, as in measured curves
+TOLERANCE = 0.1  # relative difference up to which speeds are taken as equal, as in measured curves
 
 
 @dataclass(frozen=True)
 class MatchedRuns:
-    """Runs of two groups in one condition, at their common speeds.
+    """Runs of two groups in the same condition, at their common speeds.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class MatchedRuns:
 
 
 def condition_text(surface: object, medium: object, load: float) -> str:
-    """Return surface, medium and load as text.
+    """Return a condition (surface, medium, load) as text.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def condition_text(surface: object, medium: object, load: float) -> str:
 
 
 def segments_of(table: pd.DataFrame, where: object = "table") -> pd.DataFrame:
-    """Return the segments of a table of friction with known speed and coefficient.
+    """Return the segments with known speed and friction coefficient.
 
     Segments that a person rejected are left out.
 
@@ -77,7 +77,7 @@ def segments_of(table: pd.DataFrame, where: object = "table") -> pd.DataFrame:
 
 
 def speed_levels(speeds: np.ndarray) -> np.ndarray:
-    """Return the geometric mean [m/s] of the group of each speed.
+    """Return, for each speed, the geometric mean [m/s] of the group of speeds it belongs to.
 
     Neighbouring speeds within 10 % of each other form a group.
 
@@ -98,7 +98,7 @@ def speed_levels(speeds: np.ndarray) -> np.ndarray:
 def match_runs(
     first: pd.DataFrame, second: pd.DataFrame, by: Sequence[str] = tuple(CONDITION)
 ) -> list[MatchedRuns]:
-    """Match two groups of runs by condition and speed.
+    """Return the runs of two groups, matched by condition and speed.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def match_runs(
 
 
 def select_level(segments: pd.DataFrame, by: str, level: str) -> pd.DataFrame:
-    """Return the segments of one level, e.g. of one surface.
+    """Return the segments with one value of a column, e.g. of one surface.
 
     Raises
     ------
@@ -157,7 +157,7 @@ def select_level(segments: pd.DataFrame, by: str, level: str) -> pd.DataFrame:
 
 
 def _condition_keys(segments: pd.DataFrame, by: Sequence[str]) -> pd.Series:
-    """Return the condition of each segment as text; an unknown load is one condition."""
+    """Return the condition of each segment as text; unknown loads count as equal."""
     columns = [segments[name].tolist() for name in by]
     texts = [
         "\n".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in row)

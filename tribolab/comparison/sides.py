@@ -1,4 +1,4 @@
-"""Sides of a comparison: results folders, tables, or two levels of one of them."""
+"""The two sides of a comparison: results folders, tables, or two levels within one of them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Side:
 def sides_of(
     first: Compared, second: Compared | None, by: str, levels: Sequence[str]
 ) -> tuple[Side, Side]:
-    """Return the sides of a comparison; arguments as for `compare`.
+    """Return the two sides of a comparison; arguments as for `compare`.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def sides_of(
 
 
 def _distinct_names(alike: tuple[Side, Side]) -> tuple[Side, Side]:
-    """Return two sides with distinct names, for two folders of the same name."""
+    """Return two sides with different names, also for two folders of the same name."""
     names = [
         str(side.folder.path) if side.folder else f"{side.name} ({word})"
         for side, word in zip(alike, ("first", "second"), strict=True)

@@ -1,4 +1,4 @@
-"""Observations of a rig in a results folder: zeros, noise, tilt, set-points, clocks."""
+"""Monitored values of a rig in a results folder: zeros, noise, tilt, set-points, clocks."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ _FRICTION = [
     "tilt_found_rad",
 ]
 SeriesColumns = dict[str, np.ndarray]
-_ALONE = arrow_csv.ReadOptions(use_threads=False)  # threads slow down reading of small tables
+_ALONE = arrow_csv.ReadOptions(use_threads=False)  # for small tables, threads slow reading down
 _SLIP = ["run", "sample_noise", "mains_amplitude"]
 
 
 @dataclass(frozen=True)
 class Observation:
-    """One value of one instrument in one campaign.
+    """One value of one monitored quantity, of one instrument in one campaign.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Observation:
 
 
 def results_below(folders: Iterable[str | Path]) -> list[Path]:
-    """Return the results folders among the given folders and below them."""
+    """Return all results folders that are, or are inside, the given folders."""
     places: list[Path] = []
     for folder in map(Path, folders):
         own = (
@@ -79,7 +79,7 @@ def results_below(folders: Iterable[str | Path]) -> list[Path]:
 
 
 def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
-    """Return the observations of the instruments in a results folder, and the folder.
+    """Return the observations of the instruments in a results folder, and the opened folder.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _segments(folder: Folder) -> SeriesColumns:
 
 
 def _table(folder: Folder, name: str, columns: Sequence[str]) -> SeriesColumns | None:
-    """Read some columns of a table, ten times faster than the whole table."""
+    """Return some columns of a table, ten times faster than by reading the whole table."""
     path = folder.path / "tables" / f"{name}.csv"
     if not path.is_file():
         return None
@@ -135,13 +135,13 @@ def _table(folder: Folder, name: str, columns: Sequence[str]) -> SeriesColumns |
 
 
 def _select_runs(table: SeriesColumns, names: Collection[str]) -> SeriesColumns:
-    """Return the rows of some runs."""
+    """Return the rows of a table that belong to some runs."""
     mine = np.array([run in names for run in table["run"]], dtype=bool)
     return {name: column[mine] for name, column in table.items()}
 
 
 def _start_time(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
-    """Return the start of the first run, without time zone; by default the time of analysis."""
+    """Return the start of the first run, without time zone; else the time of the analysis."""
     known = []
     for run in runs:
         try:
@@ -157,7 +157,7 @@ def _numbers(
     friction: SeriesColumns,
     slip: SeriesColumns | None,
 ) -> Iterable[tuple[str, str, float]]:
-    """Yield quantity, unit and value of each monitored number."""
+    """Yield the quantity, unit and value of each monitored number."""
     column = friction
     yield "zero of the friction force", "N", _finite_mean(column["friction_force_offset_N"])
     yield "zero of the normal force", "N", _finite_mean(column["normal_force_offset_N"])
@@ -185,7 +185,7 @@ def _numbers(
 
 
 def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> float:
-    """Return the gain by a dead weight, from runs on the reference, or else from their load."""
+    """Return the gain from a dead weight, found on reference runs or else from their load."""
     mine = _reference_runs(campaign, runs)
     gains = [run.get("dead_weight_gain") for run in runs if run["name"] in mine]
     if gains_known := [float(gain) for gain in gains if gain is not None]:
@@ -197,7 +197,7 @@ def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> 
 
 
 def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
-    """Return the names of the runs on a reference sample."""
+    """Return the names of the runs on the reference sample."""
     files = campaign.reference.files
     if files is None:
         return set()
@@ -209,7 +209,7 @@ def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
 def _reference_friction(
     campaign: Campaign | None, runs: Sequence[Json], friction: SeriesColumns
 ) -> Iterable[tuple[float, float]]:
-    """Yield mean friction on a reference sample and the speed, for each speed."""
+    """Yield the mean friction on the reference sample and the speed, for each speed."""
     if campaign is None:
         return
     mine = _select_runs(friction, _reference_runs(campaign, runs))
@@ -223,7 +223,7 @@ def _reference_friction(
 
 
 def group_by_speed(points: Sequence[Observation]) -> list[Observation]:
-    """Group the observations of campaigns under their common speeds.
+    """Return the observations grouped by common speeds of all campaigns.
 
     Small differences of a campaign's mean speed must not create a new quantity.
 
@@ -249,13 +249,13 @@ def group_by_speed(points: Sequence[Observation]) -> list[Observation]:
 
 
 def _finite_mean(values: np.ndarray) -> float:
-    """Return the mean of the finite values; NaN without any."""
+    """Return the mean of the finite values; NaN if there are none."""
     known = values[np.isfinite(values)]
     return float(known.mean()) if known.size else float("nan")
 
 
 def _tilt(offset: np.ndarray, load: np.ndarray) -> float:
-    """Return the angle of the force cell, from offset over load; NaN with only one load."""
+    """Return the tilt angle of the force cell, from offset against load; NaN for a single load."""
     known = np.isfinite(offset) & np.isfinite(load)
     if known.sum() < 3 or np.ptp(load[known]) < 0.2 * np.abs(load[known]).max():
         return float("nan")

@@ -1,4 +1,4 @@
-"""Uncertainty of results: budget, repeatability, control charts, comparison, planning."""
+"""Uncertainty of results: budgets, repeatability, control charts, comparisons, planning."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 from tribolab.reading.dialect.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 
-# columns of the curve's own scatter
+# columns with the scatter of the curve itself
 _OWN = ("friction_coefficient_u", "friction_coefficient_dof")
 StatedUncertainties = Mapping[str, StatedUncertainty | Mapping[str, Any]]
 
@@ -29,7 +29,7 @@ def uncertainty_budget(
     *,
     speed_tolerance: float = 0.1,
 ) -> UncertaintyBudget:
-    """Return the uncertainty budget of friction coefficients: standard uncertainty, its parts, U95.
+    """Return the uncertainty budget of friction coefficients: standard uncertainty, parts and U95.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def uncertainty_budget(
 def known_uncertainties(
     friction: xr.Dataset, stated: StatedUncertainties | None = None
 ) -> dict[str, Known]:
-    """Return the standard uncertainties by name, from the instrument's file and as stated.
+    """Return the standard uncertainties by name, from the instrument's file and from the user.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def known_uncertainties(
 
 
 def segment_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dataset:
-    """Return the friction result with the uncertainty of each segment and its parts.
+    """Return a friction result with the uncertainty of each segment and its contributions.
 
     Parameters
     ----------
@@ -162,14 +162,14 @@ def segment_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.
 
 
 class ZeroApart(NamedTuple):
-    """Friction result without the stated zero in its errors, and the inputs with it."""
+    """Friction result whose errors exclude the stated zero, which is an input of its own."""
 
     friction: xr.Dataset
     known: Mapping[str, Known]
 
 
 def zero_apart(friction: xr.Dataset, known: Mapping[str, Known]) -> ZeroApart:
-    """Remove the stated zero uncertainty from the standard errors: it is a separate part.
+    """Return a result whose standard errors exclude the stated zero: it is a separate contribution.
 
     Parameters
     ----------

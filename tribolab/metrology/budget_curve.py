@@ -1,4 +1,4 @@
-"""Uncertainty of a measured curve: scatter of its runs, and errors that they share."""
+"""Uncertainty of a measured curve: scatter of its runs, and errors common to them."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combine
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
 from tribolab.reading.dialect.uncertainty import Known
 
-_MOUNT = "mount"  # attribute of a friction result: the mount of its sample
-# inputs with a separate value at each point
+_MOUNT = "mount"  # attribute of a friction result that names the mount of its sample
+# contributions that are independent between the points of a curve
 EACH_POINT = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")
 
 
 class CurveUncertainty(NamedTuple):
-    """Measured curve with its uncertainty, and the stated inputs.
+    """Measured curve with its uncertainty, and the inputs that were stated.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class CurveUncertainty(NamedTuple):
 
 
 class _Part(NamedTuple):
-    """One input of one calibration; runs that share it share its error."""
+    """Uncertain input of one calibration; runs with the same calibration share its error."""
 
     name: str
     instrument: str
@@ -45,7 +45,7 @@ class _Part(NamedTuple):
 def curve_uncertainty(
     curve: xr.Dataset, frictions: Sequence[xr.Dataset], known: Sequence[Mapping[str, Known]]
 ) -> CurveUncertainty:
-    """Return the measured curve with the uncertainty of each point and its parts.
+    """Return the measured curve with the uncertainty of each point and its contributions.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def curve_uncertainty(
 
 
 def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[ScatterPart]:
-    """Return the noise of points with one run, and the scatter between runs of the others."""
+    """Return the scatter of each point: noise for single runs, else scatter between runs."""
     u, dof = (curve[f"friction_coefficient_{end}"].values for end in ("u", "dof"))
     several = runs > 1
     scatter = [ScatterPart(np.where(several, 0.0, u), dof, NOISE)] if not several.all() else []
@@ -113,7 +113,7 @@ def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[ScatterPart]:
 
 
 def _part_labels(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
-    """Return the label of each part: its input, and the calibration if there are several."""
+    """Return the label of each contribution, which names the calibration if there are several."""
     labels: dict[str, _Part] = {}
     for key in parts:
         alike = [other for other in parts if other.name == key.name]
@@ -129,7 +129,7 @@ def _part_labels(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
 def _point_of_segments(
     friction: xr.Dataset, points: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the point of each used segment, these segments, and observations per point."""
+    """Return the point of each used segment, these segments, and the observations per point."""
     speed = friction["sliding_speed"].values
     mu = friction["friction_coefficient"].values
     own = np.flatnonzero(np.isfinite(mu) & (speed > 0))
@@ -148,7 +148,7 @@ def _mounts(frictions: Sequence[xr.Dataset]) -> int:
 
 
 def shared_parts(curve: xr.Dataset) -> Iterator[tuple[str, np.ndarray]]:
-    """Yield the parts of the uncertainty shared by the points of a curve (sliding_speed), by name.
+    """Yield the contributions common to all points of a curve (sliding_speed), with their names.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Combination of uncertainties: root sum of squares, Welch-Satterthwaite, U95."""
+"""Combination of uncertainties: root sum of squares, Welch-Satterthwaite formula, U95."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from tribolab.units.stamping import stamp
 NOISE, BETWEEN = "noise and known zero of the run", "between runs"
 _NOT_STATED = "calibration not stated: statistical only"
 _RECTANGULAR = ("half-width", "step")
-# A scatter of few repeats may be small by chance. Below _SMALL_DOF degrees of freedom its share x
+# The scatter of few repeats can be small by chance. Below _SMALL_DOF degrees of freedom its share x
 # in the Welch-Satterthwaite sum is increased to 1 - (1 - x)^(1 + _CHANCE/nu^2): the coverage of U95
 # for two runs plus a calibration is then 93.4 to 96.4 % for any ratio of both (87 to 95 % without),
 # for three runs 95 to 95.8 %. For two runs no rule is within 1 %
 _SMALL_DOF, _CHANCE = 4.0, 10.0
-_DOMINANT = 0.7  # share of the variance above which one rectangular part shapes the distribution
+_DOMINANT = 0.7  # share of the variance above which one rectangular part sets the shape
 
 
 class ScatterPart(NamedTuple):
-    """Scatter of the data as a part of the uncertainty, one entry for each value.
+    """Scatter of the data as a contribution to the uncertainty, one entry for each value.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.n
 
 
 def coverage_factor(dof: np.ndarray | float) -> np.ndarray:
-    """Return Student's t_0.975 for given degrees of freedom.
+    """Return the coverage factor for 95 %: Student's t for given degrees of freedom.
 
     Examples
     --------
@@ -93,7 +93,7 @@ def combine_parts(
     known: Mapping[str, Known],
     unstated: Sequence[str] = (),
 ) -> xr.Dataset:
-    """Return the values with their uncertainty, degrees of freedom, U95 and parts.
+    """Return values with their combined uncertainty, degrees of freedom, U95 and contributions.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def combine_parts(
     stated = [known[name].dof if name in known else np.inf for name in parts]
     freedom += [np.full(size, dof) for dof in stated]
     dof = np.array(freedom, float).reshape(shape)
-    # an input that cannot be evaluated is left out; with unknown scatter the total is unknown
+    # inputs that cannot be evaluated are omitted; if the scatter is unknown, so is the total
     inputs = zip(parts, values[len(scatter) :], strict=True)
     missing = [name for name, row in inputs if size and np.isnan(row).all()]
     counted = np.where([[n in missing] for n in names], 0.0, values)
@@ -150,7 +150,7 @@ def _limitations(
     missing: list[str],
     unstated: Sequence[str],
 ) -> str:
-    """Return what an uncertainty does not include, or overstates, as text."""
+    """Return a text on what an uncertainty omits or overstates."""
     texts = [] if any(name in known for name in names) else [_NOT_STATED]
     texts += [
         f"calibration of {name or 'an instrument without a name'} not stated" for name in unstated
@@ -168,7 +168,7 @@ def _limitations(
 
 
 def part_name(part: str) -> str:
-    """Return the input of a part, without its instrument.
+    """Return the name of a contribution without its instrument.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def part_name(part: str) -> str:
 
 
 def part_words(name: str) -> str:
-    """Return the label of a part of the uncertainty.
+    """Return a contribution to the uncertainty in words.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Uncertainty budget as a result, with the table that papers print."""
+"""Uncertainty budget as a result, with a table for publication."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.reading.dialect.uncertainty import NAMES, Known
 
 @dataclass(frozen=True, eq=False)
 class UncertaintyBudget:
-    """Uncertainty of friction coefficients, and its parts.
+    """Uncertainty of friction coefficients, and the contributions to it.
 
     Parameters
     ----------
@@ -34,16 +34,16 @@ class UncertaintyBudget:
 
     @property
     def dim(self) -> str:
-        """Dimension of the values: "segment" or "sliding_speed"."""
+        """Dimension over which there are values: "segment" or "sliding_speed"."""
         return str(self.data["friction_coefficient"].dims[0])
 
     @property
     def caveats(self) -> str:
-        """Omissions of the uncertainty, as text; "" if it is complete."""
+        """What the uncertainty omits, as text; "" if it is complete."""
         return SegmentAttributes.from_attrs(self.data.attrs).uncertainty_says
 
     def table(self, at: int | None = None) -> pd.DataFrame:
-        """Return the budget of one value, by default a typical one, as a table.
+        """Return the budget table of one value, by default of a typical one.
 
         Parameters
         ----------
@@ -110,7 +110,7 @@ class UncertaintyBudget:
         return int(fine[np.argsort(relative[fine], kind="stable")[(fine.size - 1) // 2]])
 
     def _repr_html_(self) -> str:
-        """Return HTML of a typical value with its uncertainty, omissions, and the table."""
+        """Return HTML of a typical value with its uncertainty, what that omits, and the table."""
         table = self.table()
         mu, wide = table.attrs["friction_coefficient"], table.attrs["U95"]
         note = f"<br>{self.caveats}" if self.caveats else ""

@@ -1,4 +1,4 @@
-"""Control charts: whether an instrument still measures as it did in its baseline."""
+"""Control charts, which show whether an instrument still measures as in its baseline."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ _CUSUM_SLACK, _CUSUM_LIMIT = 0.5, 4.77
 FEWEST_OF_BASELINE, MANY = (
     5,
     30,
-)  # points of the baseline: minimum, and number above which moving ranges are used
-# mean moving range of normal values, in standard deviations
+)  # fewest points of a baseline; number from which moving ranges are used
+# mean moving range of normally distributed values over their standard deviation
 _RANGE_TO_SIGMA = 2 / math.sqrt(math.pi)
-RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, per point beyond the first
+RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, for each point after the first
 
 
 @dataclass(frozen=True)
 class Baseline:
-    """Baseline of a control chart: centre, standard deviation, and their accuracy.
+    """Baseline of a control chart: centre and standard deviation, and how well they are known.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class Baseline:
 
 
 def baseline_of(values: ArrayLike) -> Baseline:
-    """Return the centre and standard deviation of the baseline points.
+    """Return the centre and standard deviation of the points of a baseline.
 
     Parameters
     ----------
@@ -114,13 +114,13 @@ def baseline_of(values: ArrayLike) -> Baseline:
 
 
 def mean_moving_range(values: Array) -> float:
-    """Return the standard deviation of a series from its moving ranges of two."""
+    """Return the standard deviation of a series, estimated from differences of neighbours."""
     return float(np.abs(np.diff(values)).mean()) / _RANGE_TO_SIGMA
 
 
 @dataclass(frozen=True)
 class Chart:
-    """Points of a control chart after its baseline, with those that signal.
+    """Control chart: the points after the baseline, and which of them signal.
 
     Parameters
     ----------
@@ -141,14 +141,14 @@ class Chart:
 
     @property
     def any_signal(self) -> Signalled:
-        """Mask of the points that signal by any rule (point)."""
+        """Mask of the points that signal by any of the rules (point)."""
         return np.any(list(self.signals.values()), axis=0)
 
 
 def control_chart(
     values: ArrayLike, baseline: Baseline, rules: Sequence[str] = DEFAULT_RULES
 ) -> Chart:
-    """Apply the rules of control charts to points measured after a baseline.
+    """Return the control chart of points that were measured after a baseline.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def control_chart(
 
 
 def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dict[str, Signalled]:
-    """Return masks of the points that signal, by rule.
+    """Return a mask of the points that signal, for each rule.
 
     Parameters
     ----------
@@ -239,13 +239,13 @@ def _smooth(standard: Array, centre_error: float) -> tuple[Array, Array]:
         last = _EWMA_WEIGHT * standard[:, place] + (1 - _EWMA_WEIGHT) * last
         z[:, place] = last
     steps = np.arange(1, standard.shape[1] + 1)
-    decay = 1 - (1 - _EWMA_WEIGHT) ** steps  # number of weights so far
+    decay = 1 - (1 - _EWMA_WEIGHT) ** steps  # sum of the weights so far
     own = _EWMA_WEIGHT / (2 - _EWMA_WEIGHT) * (1 - (1 - _EWMA_WEIGHT) ** (2 * steps))
     return z, np.sqrt(own + centre_error * decay**2)
 
 
 def cusums(standard: Array, slack: float = _CUSUM_SLACK) -> tuple[Array, Array]:
-    """Return the upper and lower cumulative sum (series, point)."""
+    """Return the upper and lower cumulative sums, CUSUM (series, point)."""
     up, down = np.empty_like(standard), np.empty_like(standard)
     high, low = np.zeros(standard.shape[0]), np.zeros(standard.shape[0])
     for place in range(standard.shape[1]):
@@ -268,6 +268,6 @@ def _western(standard: Array, limit: float) -> Signalled:
             there = (turned > beyond * limit).astype(int)
             total = np.cumsum(there, axis=1)
             total[:, size:] -= total[:, :-size].copy()
-            # only a point on the same side completes the pattern
+            # only a point on that side can complete the pattern
             marks |= (total >= wanted) & (there == 1)
     return marks

@@ -1,4 +1,4 @@
-"""Gain of a force channel from placing and removing a dead weight."""
+"""Gain of a force channel, from placing and removing a dead weight."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tribolab.core.errors import AnalysisError
 from tribolab.friction.statistics import estimate_of
 from tribolab.units.conversion import positive
 
-_TRIM = 0.1  # share of each interval with and without the weight that is cut at both ends
-_MIN_SAMPLES = 20  # smallest number of samples of an interval
-_MIN_STEP = 10.0  # smallest ratio of the step to the noise
+_TRIM = 0.1  # share cut off at both ends of each interval with or without the weight
+_MIN_SAMPLES = 20  # fewest samples of an interval
+_MIN_STEP = 10.0  # least step relative to the noise
 
 
 class DeadWeightGain(NamedTuple):
-    """Gain of a force channel from a dead weight.
+    """Gain of a force channel, found with a dead weight.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class DeadWeightGain(NamedTuple):
 def dead_weight_gain(
     run: xr.Dataset, weight: str | float, signal: str = "normal_force"
 ) -> DeadWeightGain:
-    """Return the gain of a force channel from a record in which a dead weight is placed or removed.
+    """Return the gain of a force channel, from a record with a dead weight placed or removed.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def dead_weight_gain(
 
 
 def _level(parts: list[tuple[float, float]]) -> tuple[float, float]:
-    """Return the mean of some intervals and its standard error."""
+    """Return the mean of the signal over some intervals, and its standard error."""
     means, errors = np.array(parts).T
     count = means.size
     by_noise = float(np.sqrt(np.sum(errors**2))) / count

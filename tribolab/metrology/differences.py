@@ -1,4 +1,4 @@
-"""Differences between two groups of runs at many points, with a joint error rate."""
+"""Differences between two groups of runs at many points, with a common error rate."""
 
 from __future__ import annotations
 
@@ -56,29 +56,29 @@ class Differences:
     methods: tuple[str, ...]
 
     def interval(self, level: float) -> tuple[Array, Array]:
-        """Return the confidence interval of each point alone at a level."""
+        """Return the confidence interval of each point by itself."""
         return interval(self.difference, self.standard_error, self.degrees_of_freedom, level)
 
     @property
     def low(self) -> Array:
-        """Lower ends of the simultaneous intervals of all differences."""
+        """Lower ends of the intervals that hold simultaneously for all points."""
         return self.difference - self.factor * self.standard_error
 
     @property
     def high(self) -> Array:
-        """Upper ends of the simultaneous intervals of all differences."""
+        """Upper ends of the intervals that hold simultaneously for all points."""
         return self.difference + self.factor * self.standard_error
 
     @property
     def differs(self) -> NDArray[np.bool_]:
-        """Mask of points whose simultaneous interval excludes zero (point)."""
+        """Mask of the points whose simultaneous interval excludes zero (point)."""
         return (self.low > 0) | (self.high < 0)
 
 
 def interval(
     difference: Array, standard_error: Array, degrees_of_freedom: Array, level: float
 ) -> tuple[Array, Array]:
-    """Return the ends of Student's confidence interval of differences at a level, e.g. 0.95."""
+    """Return the ends of Student's confidence interval at a given level, e.g. 0.95."""
     half = special.stdtrit(degrees_of_freedom, 0.5 + level / 2) * standard_error
     return difference - half, difference + half
 
@@ -90,7 +90,7 @@ def differences_of_groups(
     alpha: float = 0.05,
     seed: int = 0,
 ) -> Differences:
-    r"""Compare two groups of runs at many points, with one error rate for all points.
+    r"""Return the differences between two groups of runs, with one error rate for all points.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def differences_of_groups(
 
 @dataclass(frozen=True)
 class _Points:
-    """Results of Welch's test at the points of one condition; names as in `Differences`."""
+    """Results of Welch's test at the points of one condition; named as in `Differences`."""
 
     first: Array
     second: Array
@@ -194,7 +194,7 @@ def _points(first: Array, second: Array, terms: Array) -> _Points:
 def _adjust_jointly(
     first: Array, second: Array, terms: Array, at: _Points, level: float, seed: int
 ) -> tuple[Array, Array, str]:
-    """Return the adjusted p values of a condition's points, factor of the intervals, and method."""
+    """Return adjusted p values of all points, the factor of their intervals, and the method."""
     if permutations_will_do(len(first), len(second), level):
         scores = np.abs(_ratio(at.difference, at.standard_error))
         return *permutation_test(first, second, terms, scores, level, seed), PERMUTATION
@@ -213,7 +213,7 @@ def _adjust_jointly(
 
 
 def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -> list[str]:
-    """Return the verdict for each point: different, equivalent within a margin, or undecided.
+    """Return for each point: different, equivalent within a margin, or undecided.
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -
 
 
 def _welch(first: Array, second: Array) -> tuple[Array, Array, Array, Array]:
-    """Return means of both groups, squared error of their difference, degrees of freedom."""
+    """Return both means, the squared error of their difference, and its degrees of freedom."""
     count_a, mean_a, square_a = _mean_and_error(first)
     count_b, mean_b, square_b = _mean_and_error(second)
     total = square_a + square_b
@@ -263,6 +263,6 @@ def _mean_and_error(values: Array) -> tuple[Array, Array, Array]:
 
 
 def _ratio(difference: Array, error: Array) -> Array:
-    """Return difference over error; 0 for values that are equal except for rounding."""
+    """Return difference over error; 0 if the values are equal apart from rounding."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(difference == 0, np.where(np.isnan(error), np.nan, 0.0), difference / error)

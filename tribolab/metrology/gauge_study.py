@@ -1,4 +1,4 @@
-"""Gauge study: variance components of parts, appraisers and trials."""
+"""Gauge study: variance between parts, between appraisers and between trials."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scipy import special
 from tribolab.core.aliases import Array
 from tribolab.core.errors import AnalysisError
 
-_POOLED_ABOVE = 0.25  # p value of the interaction above which it is pooled with repeatability
+_POOLED_ABOVE = 0.25  # p value of the interaction above which it is counted as repeatability
 _CATEGORIES = math.sqrt(2)  # ndc: width of the parts' distribution in 97 % intervals of the gauge
 
 
@@ -39,7 +39,7 @@ class GaugeStudy:
 
     @property
     def reproducibility(self) -> float:
-        """Variance between appraisers, including their interaction with parts."""
+        """Variance between appraisers, including the interaction with parts."""
         return self.appraisers + self.interaction
 
     @property
@@ -49,7 +49,7 @@ class GaugeStudy:
 
     @property
     def study_variation(self) -> float:
-        """Standard deviation of the measurement relative to that of all values."""
+        """Standard deviation of the measurement over that of all values."""
         return math.sqrt(self.gauge / (self.gauge + self.parts))
 
     @property
@@ -59,7 +59,7 @@ class GaugeStudy:
 
 
 def gauge_study(values: ArrayLike) -> GaugeStudy:
-    """Return the variance components of a balanced crossed study by analysis of variance.
+    """Return the variance components of a balanced crossed study, by analysis of variance.
 
     Parameters
     ----------

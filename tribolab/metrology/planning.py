@@ -1,4 +1,4 @@
-"""Planning of sliding time and repeats for a required uncertainty of friction."""
+"""Sliding time and number of repeats for a required uncertainty of friction."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RUNS = np.arange(2, MOST_RUNS + 1)
 
 @dataclass(frozen=True)
 class Pilot:
-    """Scatter of friction in a pilot study at one speed.
+    """Scatter of friction in a pilot campaign at one speed.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Pilot:
 
 
 def run_variance(pilot: Pilot, sliding_time: float) -> float:
-    """Return the variance of the mean of one run of a given sliding time [s].
+    """Return the variance of the mean of a run with a given sliding time [s].
 
     Notes
     -----
@@ -62,7 +62,7 @@ def runs_for_standard_error(
     assurance: float | None = None,
     pilot_runs: int | None = None,
 ) -> int | None:
-    """Return the number of runs needed for a standard error of the mean.
+    """Return the number of runs for a required standard error of the mean.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def runs_for_half_interval(
     assurance: float | None = None,
     pilot_runs: int | None = None,
 ) -> int | None:
-    """Return the number of runs needed for half a 95 % interval.
+    """Return the number of runs for a required half width of the 95 % interval.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def runs_for_half_interval(
 
 @functools.lru_cache(maxsize=64)
 def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float64]:
-    """Return the ratio of the variance not exceeded with the given probability to the true one."""
+    """Return the variance, over the true one, that is not exceeded with the given probability."""
     if pilot_runs is not None:
         chance = 0.5 if assurance is None else assurance
         return np.asarray(special.fdtri(_RUNS - 1, pilot_runs - 1, chance))
@@ -126,13 +126,13 @@ def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float6
 
 
 def _first(reached: NDArray[np.float64], wanted: float) -> int | None:
-    """Return the smallest number of runs that meets a condition."""
+    """Return the smallest number of runs with an uncertainty not above the required one."""
     enough = np.flatnonzero(reached <= wanted * (1 + 1e-12))
     return int(_RUNS[enough[0]]) if enough.size else None
 
 
 def cheapest_sliding_time(pilot: Pilot, setup_time: float, longest: float) -> float:
-    """Return the sliding time of each run with the lowest total time [s].
+    """Return the sliding time per run [s] that gives the shortest total time.
 
     Parameters
     ----------

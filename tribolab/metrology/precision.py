@@ -10,12 +10,12 @@ from scipy import special
 
 from tribolab.core.aliases import Array
 
-# 95 % limit of the difference of two single results, in standard deviations: 1.96 sqrt(2)
+# limit for the difference of two single results (95 %) over the standard deviation: 1.96 sqrt(2)
 LIMIT = 2.8
 
 
 def reproducibility_deviation(repeatability: float, between: ArrayLike) -> float:
-    """Return s_R from s_r and the standard deviations between laboratories, mounts, days ...
+    """Return s_R, from s_r and the standard deviations between laboratories, mounts or days.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Date of the next calibration of an instrument, from its interval or its drift."""
+"""Date of an instrument's next calibration, from its interval or its drift."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-_MIN_POINTS = 4  # smallest number of points of a line with an error
-_FARTHEST = 3653  # days
+_MIN_POINTS = 4  # fewest points for a straight line with a standard error
+_FARTHEST = 3653  # days, how far ahead a date is predicted
 
 
 @dataclass(frozen=True)
 class Due:
-    """Date of the next calibration, and the reason.
+    """Date of the next calibration, with the reason.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def recalibration_due(
     values: ArrayLike = (),
     limit: float | None = None,
 ) -> Due:
-    """Return the date of the next calibration, from its interval and from observed drift.
+    """Return the date of the next calibration, from the calibration interval and observed drift.
 
     Parameters
     ----------

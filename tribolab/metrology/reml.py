@@ -1,4 +1,4 @@
-"""Variance components of unbalanced or nested data by restricted maximum likelihood."""
+"""Variance components of unbalanced or nested data, by restricted maximum likelihood."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from scipy import linalg, optimize
 from tribolab.core.aliases import Array
 from tribolab.core.errors import AnalysisError
 
-# starting values of each ratio of variances: the likelihood may have several maxima
+# starting values of the variance ratios, several because the likelihood can have several maxima
 _STARTS = (0.1, 2.0)
 _LARGEST = 1e6
 
 
 @dataclass(frozen=True)
 class Components:
-    """Variances of the factors and of the residual, with the estimates of the fixed effects."""
+    """Variances of the factors and of the residual, and the estimated fixed effects."""
 
     factors: tuple[float, ...]
     residual: float
@@ -31,7 +31,7 @@ class Components:
 def variance_components(
     values: ArrayLike, factors: Sequence[ArrayLike], fixed: ArrayLike | None = None
 ) -> Components:
-    """Return the variance components of values with several random factors.
+    """Return the variance components of values with one or more random factors.
 
     Parameters
     ----------
@@ -98,13 +98,13 @@ def variance_components(
 
 
 def _indicators(levels: ArrayLike) -> Array:
-    """Return the indicator matrix of the level (column) of each observation (row)."""
+    """Return a matrix that is 1 at the level (column) of each observation (row)."""
     _, codes = np.unique(np.asarray(levels), return_inverse=True)
     return np.eye(int(codes.max()) + 1)[codes]
 
 
 def _solve(y: Array, x: Array, parts: Sequence[Array], ratios: Array) -> tuple[float, float, Array]:
-    """Return loss (minus the restricted log-likelihood), residual variance and means at ratios."""
+    """Return minus the restricted log-likelihood, residual variance and means, at ratios."""
     covariance = np.eye(y.size)
     for ratio, part in zip(ratios, parts, strict=True):
         covariance += ratio * part

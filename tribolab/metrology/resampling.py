@@ -1,4 +1,4 @@
-"""Permutation and rotation tests for many points of two groups of runs."""
+"""Permutation and rotation tests of two groups of runs at many points."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from scipy import special
 
 from tribolab.core.aliases import Array
 
-_MIN_RUNS = 4  # smallest number of runs per group for permutations
-MOST_ROTATED = 40  # largest number of runs of both groups together
+_MIN_RUNS = 4  # fewest runs per group for a permutation test
+MOST_ROTATED = 40  # most runs of both groups together for a rotation test
 _DRAWS, _FEW_DRAWS = 4999, 1999
-_FEW_LEVEL = 0.005  # significance level from which fewer draws suffice
+_FEW_LEVEL = 0.005  # significance level from which fewer draws are sufficient
 _EXHAUSTIVE = 5000
-_MIN_SHARE = 0.8  # share of the level that permutations must reach
-_ROUNDING = 1e-9  # relative: rounding must not distinguish a draw from the data
+_MIN_SHARE = 0.8  # share of the significance level that permutations must be able to reach
+_ROUNDING = 1e-9  # relative tolerance, so that rounding does not separate a draw from the data
 
 
 def permutations_will_do(first: int, second: int, level: float) -> bool:
-    """Return whether the runs allow enough permutations for a significance level.
+    """Return whether there are enough permutations of the runs for a significance level.
 
     Four and four runs have 70 permutations, equal in pairs: possible levels are multiples of 2/70,
     and the one below 5 % is 2.9 %.
@@ -41,7 +41,7 @@ def permutations_will_do(first: int, second: int, level: float) -> bool:
 def permutation_test(
     first: Array, second: Array, terms: Array, scores: Array, level: float, seed: int
 ) -> tuple[Array, Array]:
-    r"""Return adjusted p values and the factor of simultaneous intervals, by permuting runs.
+    r"""Return adjusted p values, and the factor of simultaneous intervals, by permutation of runs.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def permutation_test(
     about = np.concatenate([_centre(first), _centre(second)])
     drawn = _largest(*_means_and_squares(about, chosen), terms, rng)
     same = chosen == chosen[0]
-    drawn[same.all(axis=1) | ~same.any(axis=1)] = np.inf  # the groups as measured, or exchanged
+    drawn[same.all(axis=1) | ~same.any(axis=1)] = np.inf  # the groups as measured, or interchanged
     factor = np.sort(drawn)[::-1][_allowed_draws(level, drawn.size)]
     return _share_above(drawn, scores), np.full(scores.shape, float(factor))
 
@@ -88,7 +88,7 @@ def rotation_test(
     level: float,
     seed: int,
 ) -> tuple[Array, Array]:
-    """Return adjusted p values and the factor of simultaneous intervals, by rotating residuals.
+    """Return adjusted p values, and the factor of simultaneous intervals, by rotation of residuals.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def rotation_test(
 
 
 def _allowed_draws(level: float, draws: int) -> int:
-    """Return the number of draws that may exceed a difference that is still significant."""
+    """Return how many draws may exceed a difference that is still significant."""
     return math.floor(level * draws * (1 + _ROUNDING))
 
 
@@ -131,7 +131,7 @@ def _centre(values: Array) -> Array:
 
 
 def _choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """Return the runs of the first group in each permutation; the first is as measured."""
+    """Return which runs form the first group in each permutation; the first is as measured."""
     if math.comb(first + second, first) <= _EXHAUSTIVE:
         return _all_choices(first, second)
     return _draw_choices(first, second, rng)
@@ -152,7 +152,7 @@ def _draw_choices(first: int, second: int, rng: np.random.Generator) -> NDArray[
 
 
 def _means_and_squares(values: Array, chosen: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Return the difference of the means and its squared standard error (choice, point)."""
+    """Return the difference of the means, and its squared standard error (choice, point)."""
     known = np.isfinite(values)
     with np.errstate(invalid="ignore", divide="ignore"):
         middle = np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
@@ -168,14 +168,14 @@ def _means_and_squares(values: Array, chosen: NDArray[np.bool_]) -> tuple[Array,
 
 
 def _add_terms(difference: Array, terms: Array, rng: np.random.Generator) -> Array:
-    """Add random effects of the terms to each draw except the first, which was measured."""
+    """Return differences with random calibration errors added to all draws but the measured one."""
     moved = difference.copy()
     moved[1:] += rng.normal(size=(len(difference) - 1, len(terms))) @ terms
     return moved
 
 
 def _largest(difference: Array, square: Array, terms: Array, rng: np.random.Generator) -> Array:
-    """Return the largest absolute t of all points in each draw."""
+    """Return the largest absolute t over all points, for each draw."""
     error = np.sqrt(square + (terms**2).sum(axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
         scores = np.abs(_add_terms(difference, terms, rng)) / error
@@ -184,7 +184,7 @@ def _largest(difference: Array, square: Array, terms: Array, rng: np.random.Gene
 
 @functools.lru_cache(maxsize=4)
 def _rotations(size: int, draws: int, seed: int) -> Array:
-    """Return random rotations (draw, size, size); the first is the identity."""
+    """Return random rotation matrices (draw, size, size); the first is the identity."""
     rng = np.random.default_rng(seed)
     turned, scale = np.linalg.qr(rng.normal(size=(1 + draws, size, size)))
     turned *= np.sign(np.diagonal(scale, axis1=1, axis2=2))[:, None, :]
@@ -195,10 +195,10 @@ def _rotations(size: int, draws: int, seed: int) -> Array:
 def _smallest(
     values: Array, counts: tuple[int, int], terms: Array, turns: Array, seed: int
 ) -> Array:
-    """Return the smallest p of all points for each rotation of the runs (run, point)."""
+    """Return the smallest p over all points, for each rotation of the runs."""
     total = sum(counts)
     columns = np.concatenate([np.ones((total, 1)), np.eye(total)[:, :-1]], axis=1)
-    directions = np.linalg.qr(columns)[0][:, 1:]  # (run, direction): all directions except the mean
+    directions = np.linalg.qr(columns)[0][:, 1:]  # (run, direction): orthogonal to the common mean
     turned = directions @ (turns @ (directions.T @ values))
     means, squares = [], []
     for part, count in zip(np.split(turned, [counts[0]], axis=1), counts, strict=True):
@@ -217,14 +217,14 @@ def _smallest(
 
 
 def _share_above(largest: Array, scores: Array) -> Array:
-    """Return the share of the draws whose largest score reaches each score."""
+    """Return the share of draws whose largest score is at least each score."""
     ordered = np.sort(largest)
     bound = np.where(np.isfinite(scores), scores * (1 - _ROUNDING), scores)
     return 1 - np.searchsorted(ordered, bound, side="left") / ordered.size
 
 
 def _share_below(smallest: Array, p_values: Array) -> Array:
-    """Return the share of the draws whose smallest p is at most each p."""
+    """Return the share of draws whose smallest p is at most each p."""
     ordered = np.sort(smallest)
     share = np.searchsorted(ordered, p_values * (1 + _ROUNDING), side="right") / ordered.size
     return np.maximum(share, 1 / ordered.size)

@@ -1,4 +1,4 @@
-"""Run length of a control chart: points until a false or a true alarm."""
+"""Run length of a control chart: number of points until a false or true alarm."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tribolab.metrology.control_charts import (
 )
 
 _SERIES, _BLOCK, _MAX_RUN = 4000, 250, 2000
-_SHORT, _MORE = 400, 4  # up to this number of points, a multiple of the series is affordable
+_SHORT, _MORE = 400, 4  # up to _SHORT points, _MORE times as many series are simulated
 _SEED = 20260101
 
 
@@ -30,7 +30,7 @@ def average_run_length(
     drift: float = 0.0,
     baseline: int | None = None,
 ) -> float:
-    """Average number of points until a chart with these rules signals.
+    """Return the average number of points until a chart with these rules signals.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def signal_probability(
 def _run_lengths(
     rules: tuple[str, ...], shift: float, drift: float, baseline: int | None, longest: int
 ) -> NDArray[np.float64]:
-    """Return the number of points until the first signal in many simulated series."""
+    """Return the number of points until the first signal, in many simulated series."""
     rng = np.random.default_rng(_SEED)
     count = _SERIES * (_MORE if longest <= _SHORT else 1)
     usual, centre, sigma = Baseline(0.0, 1.0), np.zeros(count), np.ones(count)
@@ -102,7 +102,7 @@ def _run_lengths(
     running = np.arange(count)
     series = np.zeros((count, 0))
     while running.size and series.shape[1] < longest:
-        # evaluated from the first point: rules with memory must not restart at a block
+        # always evaluated from the first point, because some rules have a memory
         start = series.shape[1]
         place = np.arange(start, start + min(_BLOCK, longest - start))
         fresh = rng.normal(size=(running.size, place.size)) + shift + drift * (place + 1)

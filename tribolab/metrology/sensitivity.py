@@ -1,4 +1,4 @@
-"""Sensitivities of a friction coefficient to the inputs of its budget."""
+"""Sensitivities of a friction coefficient to the inputs of its uncertainty budget."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.reading.dialect.uncertainty import Known
 
-_MIN_LOOPS = 3  # pairs above which the loops themselves determine the drift of the zero
-# inputs of the friction coefficient; the other names are inputs of the model
+_MIN_LOOPS = 3  # pairs of strokes from which the loops themselves determine the drift of the zero
+# inputs of the friction coefficient; all others are inputs of the model
 _OF_FRICTION = (
     "friction_gain",
     "normal_gain",
@@ -30,12 +30,12 @@ _OF_FRICTION = (
     "zero_drift",
     "resolution",
 )
-AMBIGUOUS = "zero_or_tilt"  # remainder of a changed load if tilt and zero cannot be separated
+AMBIGUOUS = "zero_or_tilt"  # effect of a changed load if tilt and zero cannot be separated
 
 
 @dataclass(frozen=True)
 class SegmentReadings:
-    """Quantities that the sensitivities depend on, one entry for each segment.
+    """Quantities that determine the sensitivities, one entry for each segment.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class SegmentReadings:
 
 
 def readings_of(friction: xr.Dataset) -> SegmentReadings:
-    """Collect from a friction result the quantities that the sensitivities depend on.
+    """Return the quantities that determine the sensitivities, from a friction result.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def _values(friction: xr.Dataset, name: str, default: float) -> np.ndarray:
 
 
 def _pair_means(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndarray:
-    """Return the mean of a quantity over both strokes of each pair, at both; 0 without a pair."""
+    """Return the mean over both strokes of each pair, for both strokes; 0 without a pair."""
     sums, count = np.zeros((2, int(pair.max(initial=-1)) + 1))
     np.add.at(sums, pair[both], values[both])
     np.add.at(count, pair[both], 1.0)
@@ -177,7 +177,7 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
 def _load_remainder(
     at: SegmentReadings, u: Mapping[str, float], parts: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Return the remainder of tilt and zero after a change of load between the strokes.
+    """Return the effect of tilt and zero that remains if the load differs between the strokes.
 
     If both are stated and no rest separates them, the middle of the loop was divided between them,
     and the remainder of each has the variance a b/(a + b).
@@ -191,6 +191,6 @@ def _load_remainder(
         return {"tilt": parts.get("tilt", 0.0) + left}
     if at.middle_is != TAKEN_FOR_ZERO or "friction_zero" in u:
         return {}
-    # uniform between zero and the full effect
+    # rectangular distribution from zero to the full effect
     left = np.abs(at.middle * at.inverse_load_change) / np.sqrt(3)
     return {AMBIGUOUS: left} if left.any() else {}

@@ -1,4 +1,4 @@
-"""Virtual rig: signals and files with known truth, for the demo, tests and teaching."""
+"""Virtual rig: simulated signals and files with known true values, for demo, tests, teaching."""
 
 from tribolab.rig.calibration import Calibration
 from tribolab.rig.campaign import simulate_campaign

@@ -1,4 +1,4 @@
-"""Errors of a force cell's calibration and mounting: gains, tilt, cross-talk, hysteresis."""
+"""Errors of a force cell's calibration and mounting: gain, tilt, cross-talk, hysteresis."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Calibration:
-    """True errors of the force cell; all zero by default.
+    """True calibration errors of the force cell; all are zero by default.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Calibration:
     normal_linearity: float = 0.0
 
     def seen(self, friction: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the readings of both channels for true forces [N], without zeros.
+        """Return the readings of both channels for given true forces [N], without zero offsets.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Simulated campaign on disk: raw files, campaign.toml and the truth."""
+"""Simulated campaign on disk: raw files, campaign.toml and the true values."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ class _Condition:
 
 @dataclass(frozen=True)
 class _Job:
-    """File or pair of files to make, picklable for other processes."""
+    """File or pair of files to simulate, possibly in another process."""
 
     folder: Path
     seed: int
     rig: Rig
     condition: _Condition
-    number: int  # number of the repeat; 0: the surface's scans
+    number: int  # number of the repeat; 0 for the scans of the surface
     scans: int
     date: dt.datetime
     faults: tuple[str, ...] = ()
@@ -141,7 +141,7 @@ def simulate_campaign(
     n_scans = n_scans or xu2026.profilometer.scans
 
     target.parent.mkdir(parents=True, exist_ok=True)
-    # made elsewhere and moved into place: a killed simulation leaves no partial campaign
+    # written elsewhere, then moved: a simulation that is killed leaves no partial campaign
     aside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
     try:
         for room in ("raw/friction", "raw/profiles", "truth"):
@@ -184,7 +184,7 @@ def _jobs(
 
 
 def _assign_faults(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
-    """Assign each fault to a run or surface, faults with the fewest choices first."""
+    """Return the run or surface of each fault, assigning faults with the fewest choices first."""
     for name in faults:
         fault = fault_of_campaign(name)
         able = [k for k, job in enumerate(work) if _can_have(job, fault)]
@@ -201,14 +201,14 @@ def _assign_faults(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
 
 
 def _can_have(job: _Job, fault: Fault | ScanFault) -> bool:
-    """Whether a fault suits a run, or the scans of a surface (job number 0)."""
+    """Return whether a fault can occur in a run, or in the scans of a surface (number 0)."""
     if isinstance(fault, ScanFault):
         return not job.number
     return bool(job.number) and fault.suits(job.condition.surface, job.condition.medium)
 
 
 def _date(made: int) -> dt.datetime:
-    """Return the start time of a run; there are eight runs a day."""
+    """Return the start time of a run, with eight runs a day."""
     day, turn = divmod(made, 8)
     return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
 
@@ -216,7 +216,7 @@ def _date(made: int) -> dt.datetime:
 def _processes(jobs: int) -> contextlib.AbstractContextManager[Executor | None]:
     if jobs <= 1:
         return contextlib.nullcontext()
-    # spawn: a forked child would inherit locks of the parent's threads
+    # spawn, because a forked child would inherit locks of the parent's threads
     return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
 
 
@@ -225,10 +225,10 @@ def _run_all(
     pool: Executor | None,
     progress: Callable[[str, int, int], None] | None,
 ) -> dict[str, Json]:
-    """Do the jobs here or in other processes, and return the facts in order."""
+    """Run all simulations, here or in other processes, and return the true values in order."""
     do = pool.map if pool else map
     conditions = list(dict.fromkeys(job.condition for job in work if job.number))
-    # laws first: repeats share one, in whichever process they run
+    # compute the friction laws first, because repeats share them
     laws = dict(zip(conditions, do(_law, conditions), strict=True))
     work = [replace(job, law=laws.get(job.condition)) for job in work]
     facts: dict[str, Json] = {"runs": {}, "scans": {}}
@@ -247,7 +247,7 @@ def _law(condition: _Condition) -> Law:
 
 
 def _do(job: _Job) -> tuple[str, Json]:
-    """Write the files of one run, or the scans of one surface, and return the truth."""
+    """Write the files of one run, or the scans of one surface, and return their true values."""
     c = job.condition
     if not job.number:
         stem = c.surface.lower()
@@ -256,7 +256,7 @@ def _do(job: _Job) -> tuple[str, Json]:
         if not job.faults:
             write_scans(data, folder)
             return stem, {}
-        # separate stream: without faults the scans are those of a fault-free campaign
+        # random numbers of their own: apart from the faults, scans equal those without faults
         rng = _generator(job.seed, f"{stem} faults")
         return stem, write_faulty_scans(data, job.faults, folder, rng)
     name = run_name(c.surface, c.medium, c.normal_force, job.number)
@@ -277,14 +277,14 @@ def _do(job: _Job) -> tuple[str, Json]:
 
 
 def _generator(seed: int, name: str) -> np.random.Generator:
-    """Return the random generator of a run, independent of processes and other runs."""
+    """Return the random generator of a run, independent of processes and of other runs."""
     return np.random.default_rng([seed, zlib.crc32(name.encode())])
 
 
 def _write_facts(
     folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, Json]
 ) -> None:
-    # imported late: looks up the installed package
+    # imported late: the import looks up the installed package
     from tribolab.version import __version__
 
     text = json.dumps(
@@ -307,7 +307,7 @@ def _write_facts(
 
 
 def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str:
-    """Return the content of the campaign file for these surfaces and conditions."""
+    """Return the text of the campaign file for given surfaces and conditions."""
     s = xu2026.system
     parts = [
         "# Simulated by the virtual rig of tribolab; the truth lies in truth/.\n"

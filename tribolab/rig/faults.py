@@ -1,4 +1,4 @@
-"""Faults of real rigs for simulated runs, one for each check on a run."""
+"""Faults of real rigs that can be added to simulated runs, one for each check."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.rig.simulated import SimulatedRun
 
 @dataclass(frozen=True)
 class Fault:
-    """Fault with its effect, severity, and the check that must find it.
+    """Fault of a run: its effect, its severity, and the check that must find it.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Fault:
     medium: str = ""
 
     def suits(self, surface: str, medium: str) -> bool:
-        """Whether the fault can occur on this surface in this medium."""
+        """Return whether the fault can occur on a given surface in a given medium."""
         return self.surface in ("", surface) and self.medium in ("", medium)
 
 
@@ -56,7 +56,7 @@ class Fault:
 def inject(
     run: SimulatedRun, faults: str | Iterable[str], rng: int | np.random.Generator = 0
 ) -> SimulatedRun:
-    """Return the run with faults in its logs, listed under ``facts["faults"]``.
+    """Return the run with faults added to its logs; they are listed in ``facts["faults"]``.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def inject(
 
 
 def known_fault(name: str) -> Fault:
-    """Return the fault of this name; the error for an unknown one names the nearest."""
+    """Return the fault with a given name; the error for an unknown name suggests the nearest."""
     if name not in FAULTS:
         raise ConfigError(f"the rig has no fault '{shown(name)}'{nearest(name, FAULTS, most=None)}")
     return FAULTS[name]

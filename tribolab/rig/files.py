@@ -1,4 +1,4 @@
-"""Raw files of the rig: delimited text with fixed decimals, written without loops over rows."""
+"""Raw files of the virtual rig: delimited text with fixed decimals."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments hav
 
 
 def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> bytes:
-    r"""Return text of numbers with fixed decimals, one row per line.
+    r"""Return numbers as text with fixed decimals, one row per line.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
 
 
 def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Return the content of a force log as the logger writes it."""
+    """Return the text of a force log, as the data logger writes it."""
     head = (
         "# Linear slider, force log\n"
         f"# date: {date.isoformat()}\n"
@@ -85,7 +85,7 @@ def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
 
 
 def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Return the content of a motion log as the table's controller writes it."""
+    """Return the text of a motion log, as the controller of the table writes it."""
     head = (
         "# Linear slider, motion log\n"
         f"# date: {date.isoformat()}\n"
@@ -148,7 +148,7 @@ def scan_file(
     length: float | None = None,
     results: Mapping[str, float] | None = None,
 ) -> bytes:
-    """Return the content of a profile as the stylus instrument exports it, in m.
+    """Return the text of a profile in m, as the stylus instrument exports it.
 
     Pitch and length are written to the file, by default the true ones; `results` are the
     instrument's own Ra and Rq, which it does not export by default.

@@ -1,4 +1,4 @@
-"""Friction laws of the virtual rig: the model where valid, else empirical laws."""
+"""Friction laws of the virtual rig: the mixed-lubrication model where valid, else empirical."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from tribolab.studies import xu2026
 
 _MEDIA = ("glycerol", "dry")
 
-# Effective shear stress of the dry contact [Pa], for the area with adhesion: the magnitude of
-# Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; the values are only in a figure.
+# Effective shear stress [Pa] of the dry contact area with adhesion: the order of magnitude of
+# Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; its values are only in a figure.
 _DRY_SHEAR_STRESS = {"Smooth": 0.130e6, "Sb-S": 0.605e6, "Sb-R": 0.907e6}
 
 
 @dataclass(frozen=True)
 class DryLaw:
-    """Slowly increasing friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``.
+    """Slowly increasing dry friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class DryLaw:
 
 @dataclass(frozen=True)
 class StribeckLaw:
-    """Friction of Smooth, which the model does not describe: plateau, transition, drag.
+    """Friction of Smooth, to which the model does not apply: plateau, transition, viscous drag.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class StribeckLaw:
 
 @dataclass(frozen=True)
 class StickSlip:
-    """Stick-slip of one surface in one medium as a function of speed.
+    """Stick-slip of one surface in one medium, as a function of speed.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class StickSlip:
     fade_stop: float = math.inf
 
     def at(self, speed: float) -> tuple[str, float, float]:
-        """Return form, wavelength [m] and relative drop at one speed [m/s]."""
+        """Return waveform, wavelength [m] and relative drop at a speed [m/s]."""
         left = 1.0
         if speed > self.fade_start:
             span = math.log(self.fade_stop / self.fade_start)
@@ -113,7 +113,7 @@ class StickSlip:
 
 
 def _film_thickness(speed: float, normal_force: float) -> float:
-    """Smooth soft line contact: ``h/R = 3.05 (eta U/E'R)^0.6 (W/E'R)^-0.2``, U = v/2, E' = 2E*."""
+    """Return the soft-EHL film ``h/R = 3.05 (eta U/E'R)^0.6 (W/E'R)^-0.2``, U = v/2, E' = 2E*."""
     s = xu2026.system
     stiffness = 2 * s.effective_modulus * s.radius
     entrainment = s.viscosity * speed / 2 / stiffness
@@ -121,7 +121,7 @@ def _film_thickness(speed: float, normal_force: float) -> float:
 
 
 def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | StribeckLaw | MixedLaw:
-    """Return the friction law over speed of a surface of Xu et al. at a load.
+    """Return friction over speed for a surface of Xu et al. at a load.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
         raise AnalysisError(f"the rig has no medium '{medium}'{nearest(medium, _MEDIA)}")
     s, known = xu2026.system, xu2026.surface(surface)
     pressure = s.nominal_pressure(normal_force)
-    # adhesion makes the contact of Smooth nearly full at every load; else area grows with load
+    # adhesion makes the contact of Smooth almost complete at any load; other areas grow with load
     reference = pressure if known.name == "Smooth" else s.nominal_pressure(s.loads[0])
     if medium == "dry":
         level = _DRY_SHEAR_STRESS[known.name] * known.area_ratio_dry / reference
@@ -163,12 +163,12 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
     ((_, stress),) = known.shear_stress
     drag = s.viscosity * 1e-2 * 2 * s.half_width(normal_force)
     drag /= _film_thickness(1e-2, normal_force) * normal_force / s.length
-    boundary = stress * known.area_ratio / reference  # 0.224 times 0.5 is 0.876 times 0.127
+    boundary = stress * known.area_ratio / reference  # 0.224 x 0.5 equals 0.876 x 0.127
     return StribeckLaw(boundary, transition_speed=3e-5, exponent=1.5, drag=drag)
 
 
 def stick_slip(surface: str, medium: str) -> StickSlip:
-    """Return the stick-slip described in Sec. 6 to 8; it occurs for Smooth only.
+    """Return the stick-slip described in Sec. 6 to 8, which occurs for Smooth only.
 
     Dry stick-slip is a sawtooth, equal at 1 and 3 um/s. In glycerol it is rounder and longer, much
     weaker and shorter at 3 than at 1 um/s, and absent at 10 um/s. The paper prints no numbers:

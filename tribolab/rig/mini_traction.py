@@ -1,4 +1,4 @@
-"""Simulated mini traction machine, a ball rolling and sliding on a disc, with known truth."""
+"""Simulated mini traction machine: a ball rolls and slides on a disc, with known true values."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _HEADER = (
     "ECR (%)\tRolling Speed (mm/s)\tSliding Speed (mm/s)\tSRR (%)\tTraction Force (N)\t"
     "Traction Coeff (-)"
 )
-_RANGE = (1e-6, 0.08)  # N/m, viscosity times entrainment speed: validity range of the strip theory
-_SECONDS = 10.0  # s between rows
+_RANGE = (1e-6, 0.08)  # N/m, viscosity times entrainment speed in the strip theory's range
+_SECONDS = 10.0  # time between rows [s]
 
 
 @dataclass(frozen=True)
 class MiniTraction:
-    """Steel ball on a rubber disc in a liquid, with the errors of the machine.
+    """Steel ball on a rubber disc in a liquid, with the measuring errors of the machine.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class MiniTraction:
     level: float = 0.03
 
     def friction(self, speed: np.ndarray, slide_roll: float, viscosity: float) -> np.ndarray:
-        """Return friction coefficients at entrainment speeds [m/s], without the machine's errors.
+        """Return friction coefficients at entrainment speeds [m/s], without measuring errors.
 
         It follows the reduced theory of a ball, as used for fits and bands.
         """
@@ -87,8 +87,8 @@ class MiniTraction:
 def _parts(
     surface: str, radius: float, youngs_modulus: float, normal_force: float, slide_roll: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return ln of viscosity times speed [N/m], liquid friction, and friction per shear stress."""
-    # imported late for a quick start
+    """Return ln(viscosity times speed) [N/m], fluid friction, and friction per shear stress."""
+    # imported late: scipy loads slowly
     from tribolab.contact.geometry import PointContact
     from tribolab.lubrication.parameters import Interface, Solver
     from tribolab.lubrication.stribeck import stribeck_curve
@@ -109,7 +109,7 @@ def _parts(
 
 
 def mini_traction_text(machine: MiniTraction, seed: int = 0) -> str:
-    """Return the text that the machine's program writes for one run.
+    """Return the text file of one run, as the machine's program writes it.
 
     Examples
     --------
@@ -148,7 +148,7 @@ def mini_traction_text(machine: MiniTraction, seed: int = 0) -> str:
 def simulate_mini_traction(
     folder: str | Path, seed: int = 0, *, machine: MiniTraction | None = None, repeats: int = 2
 ) -> Path:
-    """Write a campaign of a mini traction machine: runs, scans, campaign.toml and the truth.
+    """Write a simulated campaign of a mini traction machine: runs, scans, campaign.toml, truth.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Friction of the rough surfaces in glycerol: mixed-lubrication model as the rig's truth."""
+"""Friction of the rough surfaces in glycerol, by the mixed-lubrication model."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from scipy.interpolate import PchipInterpolator
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.studies import xu2026
 
-# the set speeds are nodes, so that the truth there needs no interpolation
+# the set-point speeds are nodes, so that the true friction there is not interpolated
 _SPEEDS = tuple(sorted({1e-9, 1e-8, 1e-7, *xu2026.SPEEDS, 3e-2, 1e-1}))
 
 
 @dataclass(frozen=True)
 class MixedLaw:
-    """Friction coefficient of the mixed-lubrication model with a known shear stress.
+    """Friction coefficient by the mixed-lubrication model with a known shear stress.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class MixedLaw:
 
 @functools.cache
 def mixed_law(surface: str, normal_force: float) -> MixedLaw:
-    """Return the friction law of a rough surface in glycerol with the paper's shear stress.
+    """Return the friction law of a rough surface in glycerol, with the shear stress of the paper.
 
     sigma_f is interpolated between the paper's loads and constant beyond them.
 
@@ -88,7 +88,7 @@ def mixed_law(surface: str, normal_force: float) -> MixedLaw:
     >>> law.shear_stress, round(float(law(1e-6)), 2)
     (840000.0, 1.38)
     """
-    # imported late for a quick start
+    # imported late: scipy loads slowly
     from tribolab.lubrication.stribeck import stribeck_curve
 
     known = xu2026.surface(surface)

@@ -1,4 +1,4 @@
-"""Random processes of the virtual rig."""
+"""Random processes for the virtual rig: noise and drift."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 def slow_noise(
     rng: np.random.Generator, span: float, correlation: float
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Draw a stationary random process of unit variance, defined at any time of the span.
+    """Return a stationary random process of unit variance, which can be evaluated at any time.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def slow_noise(
     memory = np.exp(-1 / 8)
     kicks = rng.standard_normal(knots)
     kicks[1:] *= np.sqrt(1 - memory**2)
-    # x_i - memory x_{i-1} = kick_i, solved as a banded system
+    # solves x_i - memory x_{i-1} = kick_i as a banded system
     recursion = np.vstack([np.ones(knots), np.full(knots, -memory)])
     values = lapack.dtbtrs(recursion, kicks[:, None], uplo="L", diag="U")[0][:, 0]
     grid = step * np.arange(knots)
@@ -41,7 +41,7 @@ def slow_noise(
 
 
 def smooth_drift(rng: np.random.Generator, span: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Draw a smooth random drift, zero at the start and of unit variance.
+    """Return a smooth random drift of unit variance that starts at zero.
 
     Three cosines of one half to three halves of a period over the span.
     """
@@ -50,7 +50,7 @@ def smooth_drift(rng: np.random.Generator, span: float) -> Callable[[np.ndarray]
     turns = np.array([0.5, 1.0, 1.5]) * 2 * np.pi / span
 
     def drift(moments: np.ndarray) -> np.ndarray:
-        start = np.cos(phases) @ amplitudes  # the zero offset is modelled separately
+        start = np.cos(phases) @ amplitudes  # the zero offset is drawn separately
         return np.cos(np.multiply.outer(moments, turns) + phases) @ amplitudes - start
 
     return drift

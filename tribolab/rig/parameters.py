@@ -1,4 +1,4 @@
-"""Parameters of the virtual rig: protocol, sensors, loggers, clocks; SI units, frozen."""
+"""Parameters of the virtual rig in SI: protocol, sensors, loggers and clocks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tribolab.studies import xu2026
 
 @dataclass(frozen=True)
 class Protocol:
-    """Protocol of a run: rest, load, forward and backward strokes at each speed, unload, rest.
+    """Protocol of a run: rest, load, strokes both ways at each speed, unload, rest.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Protocol:
 
 @dataclass(frozen=True)
 class Scatter:
-    """Real variations of friction and load, as opposed to sensor errors.
+    """True variations of friction and load, as opposed to errors of the sensors.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Scatter:
 
 @dataclass(frozen=True)
 class ForceCell:
-    """Two-axis force cell with amplifier and converter; in N.
+    """Two-axis force cell with amplifier and AD converter; forces in N.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ class Encoder:
 
 @dataclass(frozen=True)
 class Loggers:
-    """Sampling rates of the loggers: ``rate * (v / 1 um/s) ** exponent``; `rate` at rest.
+    """Sampling rates of the loggers: ``rate * (v / 1 um/s) ** exponent``, and `rate` at rest.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ class Loggers:
 
 @dataclass(frozen=True)
 class Clocks:
-    """Differences between two loggers' clocks: ``force time = motion time * (1 + rate) + shift``.
+    """Errors of two loggers' clocks: ``force time = motion time * (1 + rate) + shift``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Simulated run of the virtual rig: two logs and their truth."""
+"""Simulated run of the virtual rig: two logs and their true values."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tribolab.units.stamping import stamp
 
 
 def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:
-    """Return the name of a run and of its files.
+    """Return the name of a run, which its files have too.
 
     >>> run_name("Sb-R", "glycerol", 31.0, 1)
     'sb-r_glycerol_31N_01'
@@ -118,7 +118,7 @@ def simulate_run(
     friction, normal = read_forces(
         signals, time, interval, rig.force_cell, errors, rng, calibration
     )
-    # the other logger is started and stopped by hand
+    # the second logger is started and stopped by hand
     begin, end = rng.uniform(2.2, 4.0), schedule.end - rng.uniform(0.5, 2.5)
     moved, _ = sample_times(schedule, rig.loggers.motion_rate, rig.loggers, rng, begin, end)
     position, velocity, set_speed = read_motion(signals, moved, rig.encoder, errors, rng)
@@ -168,16 +168,16 @@ def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
 
 
 def _law_parameters(thing: object) -> Json:
-    """Return the parameters of a law for the record; the name of a bare function."""
+    """Return the parameters of a friction law, or the name of a function, for the record."""
     values = asdict(thing) if is_dataclass(thing) and not isinstance(thing, type) else {}
-    # tables are written separately
+    # tables are stored in separate files
     values = {k: v for k, v in values.items() if not isinstance(v, tuple)}
     finite = {k: v if isinstance(v, str) or np.isfinite(v) else None for k, v in values.items()}
     return {"kind": getattr(thing, "__name__", type(thing).__name__), **finite}
 
 
 def _clock_facts(errors: Errors, begin: float, end: float) -> dict[str, float]:
-    """Return the clock errors, and the constant shift that fits the whole motion log best."""
+    """Return the clock errors, and the constant time shift that fits the motion log best."""
     middle = motion_clock(np.array([begin, end]), errors).mean()
     return {
         "friction_force_offset_N": errors.friction_force_offset,

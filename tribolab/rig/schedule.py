@@ -1,4 +1,4 @@
-"""Schedule of motion and load of a run, phase by phase."""
+"""Motion and load of a run over time, phase by phase."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.rig.parameters import Protocol
 
 @dataclass(frozen=True)
 class Schedule:
-    """Phases of constant acceleration in temporal order, one array element each.
+    """Phases of constant acceleration in order of time; one array element per phase.
 
     Parameters
     ----------
@@ -42,29 +42,29 @@ class Schedule:
 
     @property
     def end(self) -> float:
-        """End of the run [s]."""
+        """Time at the end of the run [s]."""
         return float(self.start[-1] + self.duration[-1])
 
     def phase(self, time: np.ndarray) -> np.ndarray:
-        """Return the number of the phase at each time."""
+        """Return the number of the phase at given times."""
         return np.clip(np.searchsorted(self.start, time, side="right") - 1, 0, None)
 
     def motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the exact position [m] and velocity [m/s] at each time."""
+        """Return the exact position [m] and velocity [m/s] at given times."""
         i = self.phase(time)
         passed, a = time - self.start[i], self.acceleration[i]
         velocity = self.velocity[i] + a * passed
         return self.position[i] + (self.velocity[i] + 0.5 * a * passed) * passed, velocity
 
     def load(self, time: np.ndarray) -> np.ndarray:
-        """Return the load relative to the set load at each time."""
+        """Return the load at given times, relative to the set load."""
         i = self.phase(time)
         part = (time - self.start[i]) / self.duration[i]
         return self.load_start[i] + (self.load_stop[i] - self.load_start[i]) * part
 
 
 def make_schedule(protocol: Protocol) -> Schedule:
-    """Return the schedule of the phases of a protocol.
+    """Return the schedule of all phases of a protocol.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def make_schedule(protocol: Protocol) -> Schedule:
     1
     """
     p = protocol
-    # duration, acceleration, load at start and stop, set speed, stroke, sliding
+    # duration, acceleration, load at start and end, set speed, stroke, whether sliding
     rows: list[tuple[float, ...]] = [(p.unloaded_rest, 0, 0, 0, 0, -1, -1)]
     rows.append((p.loading, 0, 0, 1, 0, -1, -1))
     rows.append((p.loaded_rest, 0, 1, 1, 0, -1, -1))

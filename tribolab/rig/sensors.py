@@ -1,4 +1,4 @@
-"""Recorded signals: sampling times, noise, offsets, drift, resolution, clocks."""
+"""Recorded signals: sampling times, noise, offsets, drift, resolution and clocks."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.signals import Signals
 
-TRUE = Calibration()  # a cell without errors
-_MAINS = 50.0  # Hz
+TRUE = Calibration()  # ideal force cell
+_MAINS = 50.0  # mains frequency [Hz]
 _TIME_STEP = 1e-5  # s, resolution of the time stamps
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Systematic errors of one run.
+    """Systematic errors of one run: offsets, drift and clocks.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Errors:
 def draw_errors(
     cell: ForceCell, encoder: Encoder, clocks: Clocks, rng: np.random.Generator
 ) -> Errors:
-    """Draw the systematic errors of one run."""
+    """Return random systematic errors for one run."""
     return Errors(
         friction_force_offset=float(rng.normal(0, cell.offset_friction)),
         normal_force_offset=float(rng.normal(0, cell.offset_normal)),
@@ -59,7 +59,7 @@ def sample_times(
     begin: float = 0.0,
     end: float = np.inf,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the sampling times [s, force clock] of a logger, and the interval [s] at each.
+    """Return the sampling times [s, force clock] of a logger, and the interval [s] after each.
 
     The rate is proportional to the square root of the step's speed. A phase has a whole number of
     samples, so sampling is uniform within it except for jitter. Times increase strictly.
@@ -70,7 +70,7 @@ def sample_times(
     interval = np.repeat(schedule.duration / count, count)
     number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     time = np.repeat(schedule.start, count) + number * interval
-    # share of the shorter neighbouring interval, so that the order of samples is kept
+    # jitter relative to the shorter neighbouring interval, so that samples keep their order
     shorter = np.minimum(interval, np.concatenate([interval[:1], interval[:-1]]))
     jitter = np.clip(rng.standard_normal(time.size), -5, 5) * loggers.jitter
     time = np.round((time + jitter * shorter) / _TIME_STEP) * _TIME_STEP
@@ -88,7 +88,7 @@ def read_forces(
     rng: np.random.Generator,
     calibration: Calibration = TRUE,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return friction and normal force [N] as measured by the force cell at times [s].
+    """Return friction and normal force [N] as the force cell measures them at given times [s].
 
     Mains hum is averaged over the sampling interval, so that a slow logger hardly records it.
     """
@@ -115,7 +115,7 @@ def read_motion(
     errors: Errors,
     rng: np.random.Generator,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return position [m], velocity and set speed [m/s] as recorded by the table's controller."""
+    """Return position [m], velocity and set speed [m/s] as the table's controller records them."""
     position, velocity = signals.schedule.motion(time)
     set_speed = signals.schedule.set_speed[signals.schedule.phase(time)]
     noise = rng.standard_normal((3, time.size))
@@ -130,6 +130,6 @@ def read_motion(
 
 
 def motion_clock(time: np.ndarray, errors: Errors) -> np.ndarray:
-    """Convert force-clock time to the time of the motion logger's clock [s]."""
+    """Return times of the force clock converted to the motion logger's clock [s]."""
     shown = (time - errors.clock_shift) / (1 + errors.clock_rate)
     return np.round(shown / _TIME_STEP) * _TIME_STEP

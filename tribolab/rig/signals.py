@@ -14,13 +14,13 @@ from tribolab.rig.parameters import Protocol, Scatter
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.waves import WAVES
 
-_TRIM = 0.10  # share of a segment that the paper cuts off at both ends (App. C)
-_FINE = 20_000  # points per segment for the true averages
+_TRIM = 0.10  # share of a segment that the paper removes at both ends (App. C)
+_FINE = 20_000  # points per segment for computing true averages
 
 
 @dataclass(frozen=True)
 class StrokeFriction:
-    """Friction along one stroke, at the distance [m] from its start; positive is resistance.
+    """Friction along one stroke, over the distance [m] from its start; positive against the motion.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class StrokeFriction:
 
 @dataclass(frozen=True)
 class Signals:
-    """True signals of a run as functions of the time on the force clock [s].
+    """True signals of a run as functions of time on the force clock [s].
 
     Parameters
     ----------
@@ -76,11 +76,11 @@ class Signals:
     protocol: Protocol
 
     def force_normal(self, time: np.ndarray) -> np.ndarray:
-        """Return the normal force [N]; zero while unloaded."""
+        """Return the normal force [N]; zero while the contact is unloaded."""
         return self.normal_force * self.schedule.load(time) * (1 + self.load_error(time))
 
     def friction(self, time: np.ndarray) -> np.ndarray:
-        """Return the friction coefficient, positive when the table moves to +x."""
+        """Return the friction coefficient, positive while the table moves to +x."""
         p, plan = self.protocol, self.schedule
         phase = plan.phase(time)
         stroke, moving = plan.stroke[phase], plan.sliding[phase] >= 0
@@ -100,7 +100,7 @@ class Signals:
 
 
 def _relaxed_share(protocol: Protocol, time: np.ndarray | float) -> np.ndarray:
-    """Return the share of the friction force that remains after a time at rest."""
+    """Return the share of the friction force that remains after a given time at rest."""
     left = np.exp(-np.asarray(time) / protocol.relaxation_time)
     return protocol.relaxed_part + (1 - protocol.relaxed_part) * left
 
@@ -115,7 +115,7 @@ def make_signals(
     factor: float,
     rng: np.random.Generator,
 ) -> Signals:
-    """Draw the true signals of one run.
+    """Return random true signals of one run.
 
     Parameters
     ----------
@@ -140,14 +140,14 @@ def make_signals(
     slide = np.flatnonzero(schedule.sliding == 1)
     strokes: list[StrokeFriction] = []
     rows = []
-    left = 0.0  # signed friction at the end of the last rest
+    left = 0.0  # signed friction coefficient left at the end of the previous rest
     for k, phase in enumerate(slide):
         direction, speed = 1 if k % 2 == 0 else -1, float(schedule.set_speed[phase])
         duration, ramp = float(schedule.duration[phase]), float(schedule.duration[phase - 1])
         level = factor * float(law(np.array([speed]))[0])
         length = speed * (duration + ramp)
         form, wavelength, drop = slip.at(speed)
-        # middle of each small step of the constant-speed part, from the stroke's start
+        # positions in the constant-speed part, from the start of the stroke
         fine = 0.5 * speed * ramp + speed * duration * (np.arange(_FINE) + 0.5) / _FINE
         ripple = _ripple(form, length, wavelength, drop * level, level, scatter, fine, rng)
         stroke = StrokeFriction(level, length, ripple, left=left * direction, protocol=protocol)
@@ -190,7 +190,7 @@ def _ripple(
     fine: np.ndarray,
     rng: np.random.Generator,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return stick-slip of zero mean at constant speed, plus fluctuation with a random mean."""
+    """Return stick-slip of zero mean at constant speed, plus a random fluctuation."""
     noise = slow_noise(rng, length, scatter.fluctuation_length * length)
     wave = WAVES[form](rng, length, wavelength, drop) if form != "none" else None
 

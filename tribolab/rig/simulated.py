@@ -1,4 +1,4 @@
-"""Record of a simulated run: logs and truth."""
+"""Record of a simulated run: its logs and true values."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class SimulatedRun:
 
 @of_lists("run")
 def on_one_clock(run: SimulatedRun) -> xr.Dataset:
-    """Return the record of a rig with one clock: forces, and the true velocity.
+    """Return the record of a rig that has only one clock: forces and the true velocity.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Effects of faults on the logs of a simulated run; listed in `tribolab.rig.faults`.
+"""Changes that faults make to the logs of a run; the faults are in `tribolab.rig.faults`.
 
 Every function takes the run and a generator, draws a realistic strength, and returns the force log,
 the motion log and the facts: place and strength. Nothing is changed in place.
@@ -16,50 +16,50 @@ from tribolab.rig.simulated import SimulatedRun
 
 StrikeFacts = Json
 Struck = tuple[xr.Dataset, xr.Dataset, StrikeFacts]
-_UNLOADED = 0.05  # share of the greatest normal force above which the contact is loaded
-_FAST = 130.0  # Hz; slower logs do not resolve the lines of mains and rig
+_UNLOADED = 0.05  # share of the largest normal force above which the contact counts as loaded
+_FAST = 130.0  # Hz; lower sampling rates do not resolve lines of mains and rig
 
 
 def _typical(run: SimulatedRun) -> float:
-    """Return the mean magnitude of the friction force over the segments [N]."""
+    """Return the mean magnitude of the friction force within the segments [N]."""
     mean = float(np.abs(run.segments["friction_coefficient"]).mean())
     return mean * float(run.facts["normal_force_N"])
 
 
 def _force(run: SimulatedRun, values: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with another friction force."""
+    """Return the logs with a given friction force."""
     return run.force_log.assign(friction_force=("time", values)), run.motion_log, facts
 
 
 def _normal(run: SimulatedRun, values: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with another normal force."""
+    """Return the logs with a given normal force."""
     return run.force_log.assign(normal_force=("time", values)), run.motion_log, facts
 
 
 def _replace_times(run: SimulatedRun, time: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with other times in the force log."""
+    """Return the logs with given times of the force log."""
     return run.force_log.assign_coords(time=time), run.motion_log, facts
 
 
 def _keep_rows(run: SimulatedRun, keep: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with some rows of the force log only."""
+    """Return the logs with only some rows of the force log."""
     return run.force_log.isel(time=keep), run.motion_log, facts
 
 
 def _rows(run: SimulatedRun, stroke: int) -> slice:
-    """Return the rows of the force log within a constant-speed segment."""
+    """Return the rows of the force log inside a segment of constant speed."""
     row = run.segments.iloc[stroke]
     first, last = np.searchsorted(run.force_log.time.values, [row.start_s, row.stop_s])
     return slice(int(first), int(last))
 
 
 def _interval(run: SimulatedRun) -> np.ndarray:
-    """Return the sampling interval after each row [s]; NaN for the last."""
+    """Return the sampling interval after each row [s]; NaN after the last."""
     return np.diff(run.force_log.time.values, append=np.nan)
 
 
 def load_sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Reverse the sign of the normal force of a zeroed cell.
+    """Reverse the sign of the normal force that a zeroed cell records.
 
     Its readings at rest are then on both sides of zero. If all were negative, the reader would
     refuse the file before any check.
@@ -87,7 +87,7 @@ def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def lose_stretches(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Drop three parts of the force log."""
+    """Remove three intervals from the force log."""
     time = run.force_log.time.values
     starts = np.sort(rng.uniform(0.2, 0.7, 3)) * time[-1]
     lengths = rng.uniform(1.5, 4.0, 3)
@@ -98,7 +98,7 @@ def lose_stretches(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def jitter(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Move each time stamp within its interval."""
+    """Shift each time stamp at random within its sampling interval."""
     time = run.force_log.time.values
     step = np.diff(time)
     shorter = np.minimum(np.append(step, step[-1]), np.insert(step, 0, step[0]))
@@ -108,7 +108,7 @@ def jitter(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def rate_switch(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Thin out the second half of one segment."""
+    """Lower the sampling rate in the second half of one segment."""
     stroke, factor = int(rng.integers(len(run.segments))), int(rng.integers(3, 6))
     rows = _rows(run, stroke)
     keep = np.ones(run.force_log.sizes["time"], dtype=bool)
@@ -118,7 +118,7 @@ def rate_switch(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def dropouts(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Lose single values of the friction force."""
+    """Remove single values of the friction force."""
     values = run.force_log.friction_force.values.copy()
     share = float(rng.uniform(0.01, 0.04))
     values[rng.random(values.size) < share] = np.nan
@@ -126,7 +126,7 @@ def dropouts(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Keep the friction force at one value for a while."""
+    """Hold the friction force at one value for some time."""
     values = run.force_log.friction_force.values.copy()
     length = int(rng.uniform(0.02, 0.05) * values.size)
     row = int(rng.uniform(0.1, 0.8) * values.size)
@@ -135,7 +135,7 @@ def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def saturate(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Clip the friction force at both ends of a range."""
+    """Clip the friction force at both ends of the measuring range."""
     highest = float(np.abs(run.noise_free.friction_force.values).max())
     limit = float(rng.uniform(0.6, 0.8)) * highest
     values = np.clip(run.force_log.friction_force.values, -limit, limit)
@@ -143,7 +143,7 @@ def saturate(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def coarse_digits(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Round the friction force to 9 bits of the range."""
+    """Round the friction force to a resolution of 9 bits."""
     step = 1000 / 2**9
     values = np.round(run.force_log.friction_force.values / step) * step
     return _force(run, values, {"step_N": step})
@@ -160,13 +160,13 @@ def add_spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 def zero_offset(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Add a constant to the friction force."""
-    # far beyond the zero of the cell itself, which may have the other sign
+    # much larger than the offset of the cell itself, which may have the opposite sign
     offset = float(rng.choice([-1, 1]) * (rng.uniform(0.8, 1.5) * _typical(run) + 4.0))
     return _force(run, run.force_log.friction_force.values + offset, {"offset_N": offset})
 
 
 def zero_drift(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add a steady drift to the friction force."""
+    """Add a drift of constant rate to the friction force."""
     time = run.force_log.time.values
     drift = float(rng.choice([-1, 1]) * (rng.uniform(0.2, 0.4) * _typical(run) + 0.6))
     values = run.force_log.friction_force.values + drift * time / time[-1]
@@ -174,13 +174,13 @@ def zero_drift(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def load_error(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Scale the normal force."""
+    """Multiply the normal force by a factor."""
     factor = float(rng.choice([-1, 1]) * rng.uniform(0.06, 0.10) + 1)
     return _normal(run, factor * run.force_log.normal_force.values, {"factor": factor})
 
 
 def load_hunting(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Let the load oscillate, and friction with it."""
+    """Add an oscillation of the load, which friction follows."""
     time = run.force_log.time.values
     part, frequency = float(rng.uniform(0.06, 0.12)), float(rng.uniform(0.5, 2.0))
     wave = part * np.sin(2 * np.pi * frequency * time)
@@ -192,21 +192,21 @@ def load_hunting(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_table(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Raise the set speed above the speed of the table."""
+    """Make the set speed higher than the actual speed of the table."""
     factor = float(rng.uniform(0.88, 0.95))
     motion = run.motion_log.assign(set_speed=run.motion_log.set_speed / factor)
     return run.force_log, motion, {"factor": factor}
 
 
 def encoder_scale(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Scale the position."""
+    """Multiply the position by a factor."""
     factor = float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.12) + 1)
     motion = run.motion_log.assign(position=run.motion_log.position * factor)
     return run.force_log, motion, {"factor": factor}
 
 
 def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Reverse the motion log in time."""
+    """Reverse the order of the motion log in time."""
     motion = run.motion_log
     time = motion.time.values
     turned = motion.isel(time=slice(None, None, -1)).assign_coords(
@@ -216,14 +216,14 @@ def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _wave(run: SimulatedRun, amplitude: float, frequency: float, phase: float) -> np.ndarray:
-    """Return the sine averaged over the sampling interval of a logger."""
+    """Return a sine wave averaged over the sampling interval of a logger."""
     seen = np.nan_to_num(np.sinc(frequency * _interval(run)))
     time = run.force_log.time.values
     return amplitude * seen * np.sin(2 * np.pi * frequency * time + phase)
 
 
 def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add 50 Hz hum to the friction force, as far as the logger resolves it."""
+    """Add 50 Hz mains hum to the friction force, as far as the logger resolves it."""
     _fast_speeds(run, "hum", 1)
     amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
     values = run.force_log.friction_force.values
@@ -232,7 +232,7 @@ def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add an oscillation at one frequency, independent of speed."""
+    """Add an oscillation whose frequency does not depend on speed."""
     _fast_speeds(run, "resonance", 2)
     amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
     frequency = float(rng.uniform(15, 40))
@@ -242,7 +242,7 @@ def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
-    """Return the speeds that are sampled fast enough to show spectral lines, or raise an error."""
+    """Return the speeds sampled fast enough to show spectral lines; an error if there are none."""
     interval = _interval(run)
     speeds = []
     for stroke, speed in enumerate(run.segments["sliding_speed_m_s"]):
@@ -263,7 +263,7 @@ def sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _progress(run: SimulatedRun) -> np.ndarray:
-    """Return the share of the segment passed at each row; NaN outside segments."""
+    """Return the relative position within the segment at each row; NaN outside segments."""
     time = run.force_log.time.values
     result = np.full(time.size, np.nan)
     for stroke in range(len(run.segments)):
@@ -273,14 +273,14 @@ def _progress(run: SimulatedRun) -> np.ndarray:
 
 
 def run_in(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Change friction linearly along every segment."""
+    """Change friction linearly along each segment, as in running-in."""
     part = float(rng.choice([-1, 1]) * rng.uniform(0.2, 0.4))
     change = part * np.nan_to_num(_progress(run) - 0.5) * run.noise_free.friction_force.values
     return _force(run, run.force_log.friction_force.values + change, {"change": part})
 
 
 def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Modulate friction by three or four periods along every segment."""
+    """Modulate friction with three or four periods along each segment."""
     part, periods = float(rng.uniform(0.12, 0.25)), float(rng.uniform(3.2, 4.2))
     phase = float(rng.uniform(0, 2 * np.pi))
     wave = np.nan_to_num(np.sin(2 * np.pi * periods * _progress(run) + phase))
@@ -290,7 +290,7 @@ def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Keep so few rows that stick-slip has three to five samples per period."""
+    """Remove rows until stick-slip has only three to five samples per period."""
     strong = 0.12 * float(run.segments["friction_coefficient"].mean())
     slip = run.segments[run.segments["stick_slip_drop"] > strong]
     if slip.empty:
@@ -301,14 +301,14 @@ def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
         float(p / np.median(interval[_rows(run, stroke)]))
         for stroke, p in zip(slip.index.to_numpy(dtype=int), period, strict=True)
     ]
-    wanted = float(rng.uniform(3.0, 5.0))  # samples in the fastest period
+    wanted = float(rng.uniform(3.0, 5.0))  # samples per period of the fastest stick-slip
     every = max(2, round(min(per_period) / wanted))
     keep = np.arange(interval.size) % every == 0
     return _keep_rows(run, keep, {"every": every, "samples_per_period": min(per_period) / every})
 
 
 def rectifier(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Record the magnitude of the friction force after zeroing."""
+    """Replace the friction force by its magnitude after zeroing, as a rectifier does."""
     values = run.force_log.friction_force.values
     load = np.abs(run.force_log.normal_force.values)
     rest = load < _UNLOADED * load.max()
@@ -317,7 +317,7 @@ def rectifier(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def one_way(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Keep one loaded stroke only, so that the zero of the friction force is unknown."""
+    """Keep a single loaded stroke, so that the zero of the friction force cannot be found."""
     row = run.segments.iloc[int(rng.integers(len(run.segments)))]
     first, last = float(row.start_s) - 1.0, float(row.stop_s) + 1.0
     shift = float(run.facts["clock_shift_at_middle_s"])
@@ -331,7 +331,7 @@ def one_way(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def ramps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Let the speed of every stroke rise from a fifth of its mean to nearly twice as much."""
+    """Increase the speed within each stroke from a fifth of its mean to almost twice the mean."""
     low = float(rng.uniform(0.1, 0.3))
     motion, shift = run.motion_log, float(run.facts["clock_shift_s"])
     time, velocity = motion.time.values + shift, motion.sliding_velocity.values.copy()

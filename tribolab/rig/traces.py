@@ -1,4 +1,4 @@
-"""Simulated friction trace of one stroke, with known stick-slip and noise."""
+"""Simulated friction along one stroke, with known stick-slip and noise."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.rig.noise import slow_noise
 from tribolab.rig.waves import JITTER, WAVES
 from tribolab.units.stamping import stamp
 
-_FINE = 400  # points per period, for the true values
+_FINE = 400  # points per period, for computing true values
 
 
 @of_lists("form", "wavelength", "drop", "noise", "samples", "speed", "seed")
@@ -33,7 +33,7 @@ def simulate_trace(
     jitter: float = 0.0,
     seed: int | np.random.Generator = 0,
 ) -> xr.Dataset:
-    """Simulate the friction coefficient along one stroke at constant speed.
+    """Return a simulated friction coefficient along one stroke at constant speed.
 
     Lists of forms, wavelengths, drops, noises, numbers of samples, speeds and seeds are combined
     element by element and give a list.
@@ -100,7 +100,7 @@ def simulate_trace(
 def _truth(
     wave: Callable[[np.ndarray], np.ndarray], length: float, wavelength: float
 ) -> dict[str, float]:
-    """Return mean distance between peaks and mean drop of the wave without noise."""
+    """Return the mean distance between peaks and the mean drop of the wave without noise."""
     place = np.linspace(0, length, int(_FINE * length / wavelength))
     values = wave(place)
     rising = np.diff(values) > 0

@@ -1,4 +1,4 @@
-"""Truth of a simulated campaign, stored with the raw files and never read by the analysis."""
+"""True values of a simulated campaign, stored with the raw files but not used by the analysis."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.core.untyped import Json
 
 @dataclass(frozen=True)
 class Truth:
-    """Truth of a simulated campaign.
+    """True values of a simulated campaign.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Truth:
 
 
 def read_truth(folder: str | Path) -> Truth:
-    """Read the truth of a simulated campaign.
+    """Return the true values of a simulated campaign from its folder.
 
     Parameters
     ----------

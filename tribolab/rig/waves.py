@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-JITTER = 0.07  # relative standard deviation of period and drop
-_FALL = 0.04  # share of a period taken by the abrupt drop
+JITTER = 0.07  # relative standard deviation of the period and of the drop
+_FALL = 0.04  # share of a period that the sudden drop takes
 
 
 def sawtooth(
@@ -17,7 +17,7 @@ def sawtooth(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return a sawtooth wave with slow linear rise, abrupt drop, and random scatter.
+    """Return a sawtooth wave: linear rise, sudden drop, and random scatter of both.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def rounded(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the rounded sawtooth wave, close to a sine; parameters as for `sawtooth`."""
+    """Return a rounded sawtooth wave, almost a sine; parameters as for `sawtooth`."""
     starts, periods, sizes = _periods(rng, length, wavelength, jitter)
     edges = np.append(starts, starts[-1] + periods[-1])
     turns = np.arange(edges.size)
@@ -66,7 +66,7 @@ def rounded(
 def _periods(
     rng: np.random.Generator, length: float, wavelength: float, jitter: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Draw starts and lengths of enough periods to cover the length, and a size at each edge."""
+    """Return random starts and lengths of periods, and an amplitude at each of their edges."""
     count = int(np.ceil(1.5 * length / wavelength)) + 4
     periods = wavelength * np.clip(1 + jitter * rng.standard_normal(count), 0.5, 1.5)
     first = -wavelength * rng.uniform(1, 2)
@@ -82,7 +82,7 @@ def irregular(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return stick-slip without a period, with random thresholds and drops.
+    """Return stick-slip without a period: thresholds and drops are random.
 
     Parameters as for `sawtooth`; `jitter` is ignored. Peaks and valleys scatter by a third of a
     drop. Loading has constant slope, so that periods follow from the thresholds; a drop takes a

@@ -1,4 +1,4 @@
-"""Faults of real profilometers for simulated scans, one for each check."""
+"""Faults of real profilometers that can be added to simulated scans, one for each check."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Strike = Callable[[xr.Dataset, np.random.Generator], xr.Dataset]
 
 @dataclass(frozen=True)
 class ScanFault:
-    """Fault of scans with its effect, severity, and the check that must find it.
+    """Fault of scans: its effect, its severity, and the check that must find it.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class ScanFault:
 
 
 def exported(scans: xr.Dataset) -> xr.Dataset:
-    """Return the rig's scans as read back from their files, with the stated metadata.
+    """Return simulated scans as read back from their files, with the stated metadata.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def exported(scans: xr.Dataset) -> xr.Dataset:
 def strike(
     scans: xr.Dataset, faults: str | Iterable[str], rng: int | np.random.Generator = 0
 ) -> xr.Dataset:
-    """Add faults to exported scans.
+    """Return scans with faults added.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def _change_heights(scans: xr.Dataset, height: np.ndarray, **attrs: float | str) -> xr.Dataset:
-    """Return scans with other heights, rounded to the gauge's resolution."""
+    """Return scans with other heights, rounded to the resolution of the instrument."""
     digits = np.round(height / 1e-9) * 1e-9
     return scans.assign(height=scans.height.copy(data=digits)).assign_attrs(attrs)
 
@@ -186,7 +186,7 @@ def _uneven(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     rows = [np.interp(places, x, row) for row in scans.height.values]
     brought = [even("scan", places, row) for row in rows]
     resampled = _change_heights(scans, np.stack([b[1] for b in brought]), **brought[0][2])
-    return resampled.assign_coords(recorded_x=("x", places))  # as written in the file
+    return resampled.assign_coords(recorded_x=("x", places))  # as it is written in the file
 
 
 def _wrong_length(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:

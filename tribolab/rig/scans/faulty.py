@@ -1,4 +1,4 @@
-"""Files of simulated scans with faults, for simulated campaigns."""
+"""Files of simulated scans with faults."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tribolab.rig.faults import FAULTS, Fault
 from tribolab.rig.files import scan_file
 from tribolab.rig.scans.faults import SCAN_FAULTS, ScanFault, exported
 
-# Of `simulate_campaign(faults=...)`: a name shared with runs means the fault of runs.
+# Names for `simulate_campaign(faults=...)`: scan_ is added to names that are also faults of runs.
 SCAN_FAULTS_BY_NAME: dict[str, ScanFault] = {
     f"scan_{name}" if name in FAULTS else name: fault for name, fault in SCAN_FAULTS.items()
 }
 
 
 def fault_of_campaign(name: str) -> Fault | ScanFault:
-    """Return the fault of runs or of scans of this name.
+    """Return the fault of runs or scans with a given name.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def write_faulty_scans(
     """
     rng = np.random.default_rng(rng)
     struck = exported(scans)
-    # the instrument's own results are exported only if the fault concerns them
+    # the roughness computed by the instrument is exported only if the fault is in it
     results = any(SCAN_FAULTS_BY_NAME[name].check == "results" for name in faults)
     files = _files(struck, results)
     facts: dict[str, dict[str, list[dict[str, str]]]] = {}
@@ -83,9 +83,9 @@ def write_faulty_scans(
 
 
 def _files(scans: xr.Dataset, results: bool) -> dict[str, bytes]:
-    """Return the content of each scan's file."""
+    """Return the text of each scan's file."""
     attrs, x, heights = scans.attrs, scans.x.values, scans.height.values
-    if "recorded_x" in scans.coords:  # uneven speed of the traverse
+    if "recorded_x" in scans.coords:  # the traverse moved at uneven speed
         places = scans.recorded_x.values
         x, heights = places, [np.interp(places, x, row) for row in heights]
     stated = {name: attrs[f"instrument_{name}_m"].split("; ") for name in ("Ra", "Rq")}

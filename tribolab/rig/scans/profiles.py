@@ -1,4 +1,4 @@
-"""Profilometer scans of the virtual cylinders."""
+"""Simulated stylus profiles of the reference cylinders."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from tribolab.studies import xu2026
 from tribolab.surface.synthesis import synthesise_profiles
 from tribolab.units.stamping import stamp
 
-_OVERSAMPLING = 2  # points of the surface per pitch of the instrument
-_NOISE = 5e-9  # m
-_STEP = 1e-9  # m, resolution of the height
-_TILT = 0.02  # largest slope of the mounting
+_OVERSAMPLING = 2  # points of the simulated surface per sampling pitch
+_NOISE = 5e-9  # m, rms noise
+_STEP = 1e-9  # m, height resolution
+_TILT = 0.02  # largest slope of the specimen as mounted
 
 
 def scans(
@@ -22,7 +22,7 @@ def scans(
     seed: int | np.random.Generator = 0,
     length: float | None = None,
 ) -> xr.Dataset:
-    """Scan a cylinder along its circumference with the paper's stylus instrument.
+    """Return profiles of a cylinder along its circumference, as the paper's stylus traces them.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def scans(
     height = felt[:, ::_OVERSAMPLING] + _NOISE * rng.standard_normal(
         (profiles, (points - 1) // _OVERSAMPLING + 1)
     )
-    height -= height[:, :1]  # the instrument starts at zero
+    height -= height[:, :1]  # the instrument sets the first height to zero
     data = xr.Dataset(
         {"height": (("profile", "x"), np.round(height / _STEP) * _STEP)},
         {"x": tool.pitch * np.arange(height.shape[1])},
@@ -94,7 +94,7 @@ def scans(
 
 
 def touch(height: np.ndarray, pitch: float, tip_radius: float) -> np.ndarray:
-    """Return the height [m] of a spherical tip on profiles (..., x): dilation by the sphere."""
+    """Return the height [m] of a spherical tip that touches profiles (..., x): a dilation."""
     # imported late: scipy loads slowly
     from scipy.ndimage import grey_dilation
 
