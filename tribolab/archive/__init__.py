@@ -1,4 +1,4 @@
-"""Archives of results with their raw data and metadata, for a repository."""
+"""Archives of results with raw data and metadata, for a data repository."""
 
 from __future__ import annotations
 

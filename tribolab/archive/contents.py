@@ -1,4 +1,4 @@
-"""Files of a deposit: results, settings and raw files, each with a description."""
+"""Files of an archive: results, settings and raw files, each with a description."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tribolab.core.untyped import Json
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.report.campaign_tables import TABLES
 
-_RESULTS = "published"  # outside the results folder of `tribolab run`, which would be replaced
-_OWN = ("catalogue.sqlite",)  # cache for the next run
+_RESULTS = "published"  # not inside the results folder of `tribolab run`, which every run replaces
+_OWN = ("catalogue.sqlite",)  # files for the next run only
 _KINDS = {
     ".html": "text/html",
     ".json": "application/json",
@@ -33,7 +33,7 @@ _KINDS = {
 
 @dataclass(frozen=True)
 class Item:
-    """File of the deposit: source path, name in the deposit, description, media type."""
+    """File of the archive: source path, name in the archive, description, media type."""
 
     source: Path
     name: str
@@ -42,7 +42,7 @@ class Item:
 
 
 def campaign_of(results: Path, report: Json, stated: Path | None = None) -> Campaign:
-    """Return the campaign of the results.
+    """Return the campaign that a results folder belongs to.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def campaign_of(results: Path, report: Json, stated: Path | None = None) -> Camp
 
 
 def items_of(results: Path, campaign: Campaign, *, raw: bool) -> list[Item]:
-    """Return the files of a deposit.
+    """Return the files of an archive.
 
     Parameters
     ----------

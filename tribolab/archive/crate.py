@@ -1,4 +1,4 @@
-"""Metadata of a deposit: RO-Crate, and a Frictionless data package of its tables."""
+"""Metadata of an archive: RO-Crate, and a Frictionless data package of its tables."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _TYPES = {"i": "integer", "f": "number", "b": "boolean"}
 
 @dataclass(frozen=True)
 class CrateFacts:
-    """Size and SHA-256 of a packed file."""
+    """Size and SHA-256 of a file in the archive."""
 
     size: int
     sha256: str
@@ -32,7 +32,7 @@ class CrateFacts:
 
 @dataclass(frozen=True)
 class People:
-    """Author, publisher and licence of a deposit; "" if not stated."""
+    """Author, publisher and licence of an archive; "" if not stated."""
 
     author: str = ""
     publisher: str = ""
@@ -46,7 +46,7 @@ def crate_metadata(
     facts: Mapping[str, CrateFacts],
     people: People,
 ) -> Json:
-    """Return the RO-Crate metadata of a deposit, as JSON-LD.
+    """Return the RO-Crate metadata of an archive, as JSON-LD.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def crate_metadata(
         "version": version,
         "softwareVersion": version,
         "softwareRequirements": f"Python {report['versions']['python']}",
-        "url": f"pkg:generic/tribolab@{version}",  # a package name that is valid in a URL
+        "url": f"pkg:generic/tribolab@{version}",  # a package URL, valid as an identifier
         "description": "Workbench for friction experiments: raw files in, friction out.",
     }
     actions = _actions(items, instruments, author, report["made_at"])
@@ -110,7 +110,7 @@ def crate_metadata(
 def data_package(
     report: Json, tables: Mapping[str, pd.DataFrame], facts: Mapping[str, CrateFacts]
 ) -> Json:
-    """Return the Frictionless description of the tables, by their names in the deposit."""
+    """Return the Frictionless description of the tables in an archive."""
     return {
         "profile": "tabular-data-package",
         "name": "tribolab-results",
@@ -142,7 +142,7 @@ def data_package(
 
 
 def address(name: str) -> str:
-    """Return the identifier of a file in the metadata: its name without spaces."""
+    """Return the identifier of a file in the metadata: its name with escaped spaces."""
     return quote(name)
 
 
@@ -207,7 +207,7 @@ def _instruments(report: Json, campaign: Campaign) -> list[Json]:
 
 
 def _measured(report: Json) -> list[Json]:
-    """Return one value for each friction coefficient of each measured curve."""
+    """Return one metadata value for each friction coefficient of the measured curves."""
     made = []
     for curve in report["curves"]:
         for number, point in enumerate(curve["points"], start=1):
@@ -255,7 +255,7 @@ def _people(people: People) -> tuple[Json, Json, Json]:
 def _actions(
     items: Sequence[Item], instruments: Sequence[Json], author: Json, made_at: str
 ) -> list[Json]:
-    """Return the measurement that created the raw files, and the analysis of the results."""
+    """Return the measurement that created the raw files, and the analysis that gave the results."""
     raw = [item for item in items if item.description in ("A raw file", "A scan")]
     settings = [item for item in items if item.kind == "application/toml"]
     results = [item for item in items if item not in raw and item not in settings]

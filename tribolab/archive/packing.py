@@ -1,4 +1,4 @@
-"""Archive of a campaign in one file that others can read and analyse again."""
+"""Archive of a campaign in one file, from which others can repeat the analysis."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def pack(
     publisher: str = "",
     licence: str = "",
 ) -> Path:
-    """Pack results with their settings and raw data into one file for a repository.
+    """Pack results with their settings and raw data into one file for a data repository.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def pack(
 
 
 def problems_of(path: str | Path) -> list[str]:
-    """Return the problems of an archive: files that are missing, changed, or not described.
+    """Return the problems of an archive: missing, changed or undescribed files.
 
     Raises
     ------
@@ -154,13 +154,13 @@ def _is_as_described(archive: zipfile.ZipFile, name: str, part: Json) -> bool:
             while block := file.read(_BLOCK):
                 digest.update(block)
                 size += len(block)
-    except ZIP_DAMAGE:  # checksum of the checksums themselves
+    except ZIP_DAMAGE:  # the list of checksums is itself damaged
         return False
     return digest.hexdigest() == part["sha256"] and str(size) == part["contentSize"]
 
 
 def _dangling(graph: Sequence[Json]) -> list[str]:
-    """Return the references to entries that are not described, apart from external URLs."""
+    """Return references to entries without a description, except external URLs."""
     known = {part["@id"] for part in graph}
     wanted: dict[str, None] = {}
     for part in graph:
@@ -173,7 +173,7 @@ def _dangling(graph: Sequence[Json]) -> list[str]:
 
 
 def _add(archive: zipfile.ZipFile, item: Item) -> CrateFacts:
-    """Pack a file in its present state, with its checksum."""
+    """Add a file in its present state to an archive, and return its size and checksum."""
     digest, size = hashlib.sha256(), 0
     info = zipfile.ZipInfo.from_file(item.source, item.name, strict_timestamps=False)
     info.compress_type = zipfile.ZIP_DEFLATED

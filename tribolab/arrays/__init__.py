@@ -1,1 +1,1 @@
-"""Long arrays: medians, chunks, scratch files, and functions on lists of runs."""
+"""Tools for long arrays: medians, processing in pieces, scratch files; functions of lists."""

@@ -1,4 +1,4 @@
-"""Decorators for functions of one run or dataset that also accept lists or further dims."""
+"""Decorators that make functions of one run or dataset accept lists or further dimensions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 class OfRuns(Protocol[P, R]):
-    """Function of a run that returns a list for a list of runs."""
+    """Type of a function of a run that returns a list if it is given a list of runs."""
 
     @overload
     def __call__(self, runs: list[xr.Dataset], /, *args: Any, **kwargs: Any) -> list[R]: ...
@@ -33,7 +33,7 @@ class OfRuns(Protocol[P, R]):
 
 
 def of_runs(function: Callable[P, R], public_name: str = "") -> OfRuns[P, R]:
-    """Extend a function of a run to lists of runs, for which it returns a list.
+    """Return a function of a run that also accepts a list of runs, and then returns a list.
 
     Other arguments that are lists of datasets are paired with the runs; the rest apply to all.
 
@@ -76,7 +76,7 @@ first: tl.read('run.csv')
 
 
 def _require_run(function: str, given: Any) -> None:
-    """Raise if something else than a run is given as the run."""
+    """Raise an error if the argument for the run is not a run."""
     if isinstance(given, str | Path):
         raise AnalysisError(
             f"{function} was given the text '{given}' as run",
@@ -96,7 +96,7 @@ def _require_run(function: str, given: Any) -> None:
 
 
 class OfLists(Protocol[P, R_co]):
-    """Function that returns a list for lists."""
+    """Type of a function that returns a list if it is given lists."""
 
     @overload
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R_co: ...
@@ -106,7 +106,7 @@ class OfLists(Protocol[P, R_co]):
 
 
 def of_lists(*names: str, paired: str = "") -> Callable[[Callable[P, R]], OfLists[P, R]]:
-    """Extend a function to lists for these arguments, for which it returns a list.
+    """Return a function that also accepts lists for some arguments, and then returns a list.
 
     Parameters
     ----------
@@ -154,14 +154,14 @@ def _call_each(
     placed: int,
     number: int,
 ) -> R:
-    """Call a function once for each set of list entries."""
+    """Return the results of a function for each set of entries of the lists."""
     mine = {key: own[key][number] if key in own else value for key, value in given.items()}
     places = [mine.pop(place) for place in range(placed)]
     return function(*places, **mine)
 
 
 def _of_datasets(value: Any) -> bool:
-    # tested by name: callers with lists have loaded xarray already
+    # compared by name, so that xarray need not be loaded
     return isinstance(value, list) and all(type(item).__name__ == "Dataset" for item in value)
 
 
@@ -170,7 +170,7 @@ def _name(function: Callable[..., Any], key: int | str) -> str:
 
 
 def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Extend a function to arguments with further dims, which the result then has.
+    """Return a function whose arguments may have further dimensions, which the result then has.
 
     Parameters
     ----------
@@ -216,13 +216,13 @@ def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, 
 
 
 def _dims(value: Any) -> tuple[Hashable, ...]:
-    """Return the dims of an argument; for a dataset with a spectrum, those of the spectrum."""
+    """Return the dimensions of an argument; for a dataset with a spectrum, the spectrum's."""
     holder = value["psd_2d"] if "psd_2d" in getattr(value, "data_vars", ()) else value
     return tuple(getattr(holder, "dims", ()))
 
 
 def _apply_along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any:
-    """Call a function for each position along a dim, and combine the results."""
+    """Return the results of a function at each position along a dimension, in one object."""
     # imported late: xarray loads slowly
     import xarray as xr
 
@@ -248,12 +248,12 @@ def _apply_along(function: Callable[..., Any], given: Arguments, dim: Hashable) 
 
 
 def stated_value(value: str | float | xr.DataArray) -> str | float:
-    """Return a value as stated, or as a number if it is an array without dims."""
+    """Return an array without dimensions as a number; other values are returned unchanged."""
     return float(value.item()) if hasattr(value, "item") else value
 
 
 def _drop_missing(value: Any) -> Any:
-    """Drop missing entries of one condition: wavenumbers of spectra, segments."""
+    """Return the data of one condition without missing wavenumbers or segments."""
     if not hasattr(value, "data_vars"):
         return value
     for dim in {"wavenumber", "segment"} & {*value.dims}:

@@ -1,4 +1,4 @@
-"""Processing of long records in pieces that fit into the cache."""
+"""Processing of long records in pieces that fit into the processor's cache."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 
 from tribolab.arrays.scratch import let_go, room
 
-PIECE = 1 << 17  # samples of a piece
-_GIVEN_BACK = 1 << 21  # samples after which memory is returned to the system, which takes time
+PIECE = 1 << 17  # samples per piece
+_GIVEN_BACK = 1 << 21  # samples after which memory is returned to the system, which is slow
 _Part = TypeVar("_Part")
 
 
 def pieces(
     start: int, stop: int, length: int | None = None, *, block: int = 1
 ) -> Iterator[tuple[int, int]]:
-    """Cut a range of samples, or of blocks of samples, into pieces.
+    """Return the slices that divide a range of samples, or of blocks of samples, into pieces.
 
     Their memory is returned after some pieces, and after the last.
 
@@ -51,7 +51,7 @@ def pieces(
 
 
 def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Cut blocks of variable length into pieces of at least one block; as `pieces`.
+    """Return the slices that divide blocks of unequal length into pieces of at least one block.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
 
 
 def one_by_one(parts: Iterable[_Part]) -> Iterator[_Part]:
-    """Yield the parts of a record, and free the memory of each before the next.
+    """Yield the parts of a record one by one, and free the memory of each before the next.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def one_by_one(parts: Iterable[_Part]) -> Iterator[_Part]:
 
 
 def anywhere(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> bool:
-    """Return whether a test of single values is true for any sample; stops at the first.
+    """Return whether a test is true for any sample, stopping at the first.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def anywhere(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> bo
 
 
 def samples_where(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> np.ndarray:
-    """Return the indices of the samples for which a test of single values is true.
+    """Return the indices of the samples for which a test is true.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def _all_of(values: np.ndarray) -> Iterator[tuple[int, int]]:
 
 
 def stretches(has_property: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
-    """Return the intervals of a record in which a condition is true.
+    """Return the intervals of a record within which a condition is true.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def stretches(has_property: Callable[[int, int], np.ndarray], count: int) -> np.
 
 
 def concatenate_parts(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the parts of a record as one array.
+    """Return the parts of a record joined to one array.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def concatenate_parts(parts: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def chosen(values: np.ndarray, keep: np.ndarray) -> np.ndarray:
-    """Return the selected samples.
+    """Return the samples that a mask selects.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def lowered(values: np.ndarray, by: float) -> np.ndarray:
 
 
 def running_total(values: np.ndarray, level: float = 0.0) -> np.ndarray:
-    """Return the cumulative sums of the first 0, 1, 2 ... values above a level.
+    """Return the cumulative sums of values above a level, starting with 0.
 
     Examples
     --------
@@ -207,7 +207,7 @@ def running_total(values: np.ndarray, level: float = 0.0) -> np.ndarray:
     total[0] = 0.0
     for first, last in pieces(0, values.size):
         part = total[first : last + 1]
-        # the sum so far is added first, so that the result does not depend on the pieces
+        # add the previous sum first, so that the result does not depend on the size of the pieces
         part[1:] = values[first:last] - level
         np.cumsum(part, out=part)
     return total

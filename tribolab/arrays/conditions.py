@@ -1,4 +1,4 @@
-"""Results for several conditions, such as surfaces, media or loads, with labels."""
+"""Results for several conditions (surfaces, media or loads) with their labels."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ConditionLabels = dict[Hashable, Any]
 
 @dataclass(frozen=True, eq=False)
 class Conditions(Generic[Selected]):
-    """Results of one kind for several conditions.
+    """Results of one kind, one for each condition.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Conditions(Generic[Selected]):
     def of(
         cls, coords: Mapping[Hashable, Any], compute: Callable[[ConditionLabels], Selected | None]
     ) -> Self:
-        """Compute a result for each condition.
+        """Return the results of a function for all conditions.
 
         Parameters
         ----------
@@ -53,7 +53,7 @@ class Conditions(Generic[Selected]):
         return cls(xr.DataArray(results, coords, tuple(coords)))
 
     def sel(self, **labels: object) -> Selected | Self:
-        """Select the result of one or several conditions, like `xarray.DataArray.sel`.
+        """Return the result of one or several conditions, as `xarray.DataArray.sel` does.
 
         Raises
         ------
@@ -69,7 +69,7 @@ class Conditions(Generic[Selected]):
         return result
 
     def __iter__(self) -> Iterator[tuple[ConditionLabels, Selected]]:
-        """Yield the labels and the result of each measured condition."""
+        """Yield labels and result of each condition that was measured."""
         for place in np.ndindex(self.results.shape):
             part = self.results[place]
             if part.item() is not None:
@@ -77,7 +77,7 @@ class Conditions(Generic[Selected]):
 
 
 def labels_text(labels: Mapping[Any, object]) -> str:
-    """Return labels with the names of their dims, as text.
+    """Return labels as text, with the names of their dimensions.
 
     Examples
     --------
@@ -88,5 +88,5 @@ def labels_text(labels: Mapping[Any, object]) -> str:
 
 
 def labels_along(holder: xr.DataArray, dim: Hashable) -> np.ndarray:
-    """Return labels along a dim; numbers from 0 without labels."""
+    """Return the labels along a dimension; without labels, numbers from 0."""
     return holder[dim].to_numpy() if dim in holder.coords else np.arange(holder.sizes[dim])

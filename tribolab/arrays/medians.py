@@ -1,4 +1,4 @@
-"""Medians by sorting, several times faster than `numpy.median`.
+"""Medians and quantiles by sorting, several times faster than `numpy.median`.
 
 The checks of numpy cost more than the median of a few hundred values, and sorting uses vector
 instructions that partitioning does not.
@@ -13,13 +13,13 @@ import numpy as np
 
 from tribolab.arrays.chunks import pieces
 
-_MAX_SORTED = 1 << 20  # samples; shorter records are sorted as a whole
-_STRETCHES, _SHORT = 256, 256  # number and length of the parts of a long record that are sampled
-_AROUND = (0.05, 0.3)  # initial share of the numbers on each side of a quantile that are kept
+_MAX_SORTED = 1 << 20  # samples up to which a record is sorted as a whole
+_STRETCHES, _SHORT = 256, 256  # number and length of the sampled parts of a long record
+_AROUND = (0.05, 0.3)  # share of the values kept on each side of a quantile: first, second try
 
 
 def median(values: np.ndarray) -> np.float64:
-    """Return the median of all values; NaN if any is NaN, or if there are none.
+    """Return the median of all values; NaN if any value is NaN, or if there are none.
 
     Examples
     --------
@@ -58,7 +58,7 @@ def medians_of_rows(rows: np.ndarray) -> np.ndarray:
 
 
 def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.float64:
-    """Return the median of numbers that are computed piece by piece, ignoring NaN.
+    """Return the median of values that are computed piece by piece; NaN is ignored.
 
     Only values near the median of a long record are kept; the median is exact.
 
@@ -81,7 +81,7 @@ def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.f
 
 
 def quantile_in_pieces(part: Callable[[int, int], np.ndarray], count: int, share: float) -> float:
-    """Return the quantile of numbers computed piece by piece, as by `numpy.quantile`; NaN if none.
+    """Return a quantile of values computed piece by piece, as by `numpy.quantile`; NaN if none.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def quantile_in_pieces(part: Callable[[int, int], np.ndarray], count: int, share
 
 
 class _About(NamedTuple):
-    """Numbers on both sides of a quantile, and its position between them [1]; NaN if none."""
+    """The two values around a quantile, and its position between them [1]; NaN if none."""
 
     below: np.float64
     above: np.float64
@@ -133,7 +133,7 @@ def _guess_bracket(part: Callable[[int, int], np.ndarray], count: int, share: fl
 
 
 def _sample_parts(part: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
-    """Return samples of short parts of a record, which locate a quantile roughly."""
+    """Return samples from short parts of a record, which show where a quantile roughly is."""
     starts = np.linspace(0, count - _SHORT, _STRETCHES).astype(int).tolist()
     tried = np.concatenate([part(start, start + _SHORT) for start in starts])
     return tried[~np.isnan(tried)]
@@ -142,7 +142,7 @@ def _sample_parts(part: Callable[[int, int], np.ndarray], count: int) -> np.ndar
 def _bracketed_quantile(
     part: Callable[[int, int], np.ndarray], count: int, bracket: tuple[float, float], share: float
 ) -> _About | None:
-    """Return the numbers around a quantile, from a bracket; None if it is outside."""
+    """Return the values around a quantile if it is in a bracket, else None."""
     low, high = bracket
     below, known = 0, 0
     kept = [np.zeros(0)]
@@ -156,7 +156,7 @@ def _bracketed_quantile(
 
 
 def _quantile_bracket(ordered: np.ndarray, below: int, known: int, share: float) -> _About | None:
-    """Return the numbers around a quantile above a lower bound; None if it is not there."""
+    """Return the values around a quantile if it is above a lower bound, else None."""
     rank = share * (known - 1)
     first = int(np.floor(rank))
     last = first if first == rank else first + 1
@@ -166,13 +166,13 @@ def _quantile_bracket(ordered: np.ndarray, below: int, known: int, share: float)
 
 
 def _median_of_sorted(numbers: np.ndarray) -> np.float64:
-    """Return the median of sorted numbers, ignoring the NaN at the end."""
+    """Return the median of sorted values, ignoring NaN at their end."""
     known = int(np.searchsorted(numbers, np.nan))
     return _middle(numbers[:known]) if known else np.float64(np.nan)
 
 
 def _middle(ordered: np.ndarray) -> np.float64:
-    """Return the median of sorted numbers, at least one."""
+    """Return the median of one or more sorted values."""
     half = ordered.size // 2
     if ordered.size % 2:
         return ordered[half]

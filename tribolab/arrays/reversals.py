@@ -1,16 +1,16 @@
-"""Detection of a reciprocating motion from the friction force alone."""
+"""Detection of reciprocating motion from the sign of the friction force."""
 
 from __future__ import annotations
 
 import numpy as np
 
-_CLEAR = 0.3  # share of the force's typical magnitude; smaller values have no sign
-_BOTH = 0.2  # smallest share of the signed samples on either side
-_OFTEN = 4  # smallest number of sign changes; a stroke and its return change it once
+_CLEAR = 0.3  # share of the typical magnitude; the sign of smaller forces is ignored
+_BOTH = 0.2  # least share of the samples with either sign
+_OFTEN = 4  # fewest sign changes; a cycle has two, a single stroke and its return one
 
 
 def reversals(force: np.ndarray) -> int:
-    """Count the sign changes of a friction force, if it reciprocates.
+    """Return the number of sign changes of a friction force, 0 if it does not reciprocate.
 
     Parameters
     ----------

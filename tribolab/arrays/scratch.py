@@ -21,14 +21,14 @@ from pathlib import Path
 
 import numpy as np
 
-LONG = 1 << 24  # samples; a signal of fewer takes 128 MB at most
+LONG = 1 << 24  # samples of a long array; shorter ones take at most 128 MB
 _mapped: weakref.WeakSet[mmap.mmap] = weakref.WeakSet()
 
 
 def room(
     count: int, kind: type[np.generic] | np.dtype = np.float64, of: int | None = None
 ) -> np.ndarray:
-    """Return an empty array: in memory or, if it is long, in a scratch file.
+    """Return an empty array, in memory or, if it is long, in a scratch file.
 
     Parameters
     ----------
@@ -52,12 +52,12 @@ def room(
 
 
 def is_long(count: int) -> bool:
-    """Return whether an array of so many samples belongs in a scratch file."""
+    """Return whether an array with so many samples is stored in a scratch file."""
     return count >= LONG
 
 
 def filled(count: int, value: float, kind: type[np.generic] = np.float64) -> np.ndarray:
-    """Return an array filled with one value, as by `room`.
+    """Return an array filled with one value, stored as by `room`.
 
     Examples
     --------
@@ -77,15 +77,15 @@ def take_in(mapped: mmap.mmap) -> None:
 
 
 def let_go() -> None:
-    """Release the memory of long arrays; they are read again when needed."""
-    if not _mapped:  # called after every piece of every run, usually without effect
+    """Free the memory of long arrays; their files are read again when needed."""
+    if not _mapped:  # called after every piece of every run, mostly without any scratch file
         return
     for mapped in list(_mapped):
         mapped.madvise(mmap.MADV_DONTNEED)
 
 
 def tidy_up() -> None:
-    """Delete the scratch files of unused arrays, including those in reference cycles."""
+    """Delete the scratch files of arrays that are no longer used, also if references are cyclic."""
     if _mapped:
         gc.collect()
         let_go()
@@ -96,7 +96,7 @@ def _scratch(size: int) -> mmap.mmap | None:
         return None
     try:
         with tempfile.TemporaryFile(dir=_folder()) as file:
-            # report a full disk now instead of by a signal during a calculation
+            # allocate now, so that a full disk is an error here and not a crash in a calculation
             os.posix_fallocate(file.fileno(), 0, size)
             mapped = mmap.mmap(file.fileno(), size)
     except OSError:

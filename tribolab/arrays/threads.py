@@ -1,4 +1,4 @@
-"""Linear algebra on one thread, faster for small matrices."""
+"""Linear algebra on a single thread, which is faster for small matrices."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from contextlib import AbstractContextManager
 
 from threadpoolctl import ThreadpoolController
 
-_SECOND = "scipy.linalg"  # scipy has a library of its own, besides numpy's
+_SECOND = "scipy.linalg"  # scipy has its own linear algebra library, besides that of numpy
 
 
 def one_thread() -> AbstractContextManager[object]:
-    """Return a context in which linear algebra of numpy and scipy uses one thread.
+    """Return a context in which the linear algebra of numpy and scipy uses one thread.
 
     Examples
     --------
@@ -28,5 +28,5 @@ def one_thread() -> AbstractContextManager[object]:
 
 @functools.cache
 def _libraries(second: bool) -> ThreadpoolController:
-    """Find the linear algebra libraries, once, because the search is slow."""
+    """Return the linear algebra libraries; cached, because the search is slow."""
     return ThreadpoolController()

@@ -1,1 +1,1 @@
-"""Reproduction of the reference paper: figures, comparison of numbers, and a page."""
+"""Reproduction of the reference paper: figures, comparison of numbers, and a web page."""

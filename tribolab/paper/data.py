@@ -1,4 +1,4 @@
-"""Data files of a reproduction, from which the figures are drawn."""
+"""Data files of the reproduction, from which its figures are drawn."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tribolab.figures.subjects.slip import Trace
     from tribolab.records.parts import CurveOutcome, RunOutcome
 
-# Several figures share the same data, and none changes it.
+# Cached, because several figures share the same data and none changes them.
 _KEPT = 64
 SURFACES = tuple(xu2026.surfaces)
 ROUGH = tuple(name for name in SURFACES if name != "Smooth")
@@ -31,7 +31,7 @@ ROUGH = tuple(name for name in SURFACES if name != "Smooth")
 
 @dataclass(frozen=True)
 class PaperData:
-    """Computed and simulated data of a reproduction, read on demand.
+    """Computed and simulated data of the reproduction, read on demand.
 
     Parameters
     ----------
@@ -50,25 +50,25 @@ class PaperData:
 
     @property
     def forces(self) -> list[float]:
-        """Normal forces [N] in glycerol, from low to high."""
+        """Normal forces [N] in glycerol, in increasing order."""
         return sorted({f for curve in self.curves if (f := curve.normal_force) is not None})
 
     def read(self, kind: str, surface: str, group: str) -> xr.Dataset:
-        """Read a group of a task's data file."""
+        """Return a group of a task's data file."""
         return _read(data_file(self.folder, kind, surface), group)
 
     def dry(self, group: str) -> dict[str, xr.Dataset]:
-        """Read a group of the dry contact of every surface."""
+        """Return a group of the dry contact for all surfaces."""
         return {name: self.read("dry", name, group) for name in SURFACES}
 
     def model(self, surface: str, force: float) -> xr.Dataset:
-        """Read the computed Stribeck curve of a surface at a force [N], over the lab's speeds."""
+        """Return the computed Stribeck curve of a surface at a force [N], at the rig's speeds."""
         curve = self.read("wet", surface, f"curve_{force:g}N")
         v = curve["sliding_speed"]
         return curve.isel(sliding_speed=np.flatnonzero((v > 3e-7) & (v < 3e-2)))
 
     def measured(self, surface: str, medium: str, force: float | None = None) -> xr.Dataset:
-        """Read a simulated measured curve, by default that at the lowest force [N]."""
+        """Return a simulated measured curve, by default at the lowest force [N]."""
         force = self.forces[0] if force is None else force
         key = surface, medium, force
         for curve in self.curves:

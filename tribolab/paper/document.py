@@ -1,4 +1,4 @@
-"""Content of the page: published numbers by section, with their status."""
+"""Content of the web page: published numbers by section, with their status."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ _MARKS = {
     ),
 }
 _BODY = "paper/section.html.j2"
-# key, heading, and the texts for "where a number is printed" that belong to it
+# key, heading, and the places in the paper ("where a number is printed") that belong to it
 _PARTS = (
     ("theory", "2 Theory of mixed lubrication", ("Sec. 2",)),
     ("setup", "3 Experiment", ("Sec. 3",)),
@@ -96,7 +96,7 @@ _ABOUT = {
     "dry": "The drawing of bonds in the contact is left out.",
     "discussion": "The drawing of a Schallamach wave is left out.",
 }
-# word added to names of quantities that are ambiguous alone
+# word added to names of quantities that are ambiguous by themselves
 _WORDS = {
     "hertz_contact_width": "2a of a smooth cylinder",
     "contact_area_ratio": "real over nominal area, A/A₀",
@@ -113,7 +113,7 @@ _WORDS = {
 
 
 def paper_sections() -> list[Section]:
-    """Return the sections of the page: the summary, those of the paper, and the sources."""
+    """Return the sections of the page: summary, those of the paper, and sources."""
     return [
         Section("summary", "Summary", "paper/summary.html.j2"),
         Section("numbers", "All published numbers", "paper/numbers.html.j2"),
@@ -129,7 +129,7 @@ def paper_document(
     laboratory: Laboratory,
     sources: Sequence[tuple[str, str, int]],
 ) -> Json:
-    """Return the content of the page as plain data: ``paper.json``.
+    """Return the content of the page as plain data, as in ``paper.json``.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def paper_document(
 
 
 def context_of(document: Json) -> Json:
-    """Return the document with further entries that the page needs."""
+    """Return the document with the additional entries that the page needs."""
     rows = document["numbers"]
     return document | {
         "parts": {
@@ -186,7 +186,7 @@ def context_of(document: Json) -> Json:
 
 
 def _pair_rows(table: pd.DataFrame) -> list[tuple[Json, Published]]:
-    """Pair every row with its published number; both have the same order."""
+    """Yield each row with its published number; both are in the same order."""
     pairs = list(zip(rows_of(table), xu2026.published, strict=True))
     for record, known in pairs:
         if (record["quantity"], record["condition"]) != (known.quantity, known.condition):
@@ -210,7 +210,7 @@ def _row(record: Json, known: Published) -> Json:
 
 
 def _difference(record: Json, known: Published) -> str:
-    """Return text on the difference of a number without relative difference; else ""."""
+    """Return the difference of a number as text if it is not relative; else ""."""
     if known.relation.startswith(BOUNDS) and record["computed"]:
         if record["status"] in (REPRODUCED, BY_CONSTRUCTION):
             return "within the bound"

@@ -1,4 +1,4 @@
-"""Figures of the reproduction, each with its numbers."""
+"""Figures of the reproduction, each with its numbers as text."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from tribolab.surface.moments import rms_roughness, rms_slope
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FigureAndText = tuple["Figure", str]  # and its content in words and numbers
-_BOUNDARY = 1e-9  # m/s, lowest speed at which the theory of Smooth is shown
+FigureAndText = tuple["Figure", str]  # the figure, and its content in words and numbers
+_BOUNDARY = 1e-9  # m/s, lowest speed at which the theory for Smooth is drawn
 
 
 def _listed(parts: Iterable[str]) -> str:
@@ -26,7 +26,7 @@ def _listed(parts: Iterable[str]) -> str:
 
 
 def paper_spectra(data: PaperData) -> FigureAndText:
-    """Draw the stand-in spectra."""
+    """Draw the power spectra that replace those of the paper's surfaces."""
     psds = data.dry("psd")
     text = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.4g} µm, slope {rms_slope(psd):.3g}"
@@ -36,7 +36,7 @@ def paper_spectra(data: PaperData) -> FigureAndText:
 
 
 def scanned_spectra(data: PaperData) -> FigureAndText:
-    """Draw spectra from the analysis of the simulated profiles."""
+    """Draw the spectra found from the simulated profiles."""
     psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
     text = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"
@@ -46,7 +46,7 @@ def scanned_spectra(data: PaperData) -> FigureAndText:
 
 
 def paper_contact_area(data: PaperData) -> FigureAndText:
-    """Draw A/A0 over pressure without adhesion."""
+    """Draw the contact area ratio A/A0 over pressure, without adhesion."""
     loads = data.dry("loads")
     text = _listed(
         f"{name}: A/A0 {float(contact.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
@@ -58,7 +58,7 @@ def paper_contact_area(data: PaperData) -> FigureAndText:
 
 
 def paper_effective_work(data: PaperData) -> FigureAndText:
-    """Draw gamma_eff/gamma_0 over magnification."""
+    """Draw the effective work of adhesion gamma_eff/gamma_0 over magnification."""
     works = data.dry("effective_work")
     text = _listed(
         f"{name}: "
@@ -77,7 +77,7 @@ def _ends(line: xr.DataArray) -> str:
 
 
 def paper_adhesive_area(data: PaperData) -> FigureAndText:
-    """Draw A/A0 over pressure with adhesion."""
+    """Draw the contact area ratio A/A0 over pressure, with adhesion."""
     loads = data.dry("loads")
     text = _listed(
         f"{name}: "
@@ -103,20 +103,20 @@ def _friction_of(curves: Iterable[xr.Dataset]) -> str:
 
 
 def dry_friction(data: PaperData) -> FigureAndText:
-    """Draw dry mu(v)."""
+    """Draw the dry friction coefficient over speed."""
     measured = [data.measured(name, "dry") for name in SURFACES]
     return plot.stribeck(measured, surfaces=SURFACES, errors="std"), _friction_of(measured)
 
 
 def paper_modulus(data: PaperData) -> FigureAndText:
-    """Draw the stand-in modulus."""
+    """Draw the rubber modulus that replaces the paper's."""
     table = modulus_table()
     ends = (f"{float(table.storage_modulus[end]):.3g} Pa" for end in (0, -1))
     return plot.modulus(table), f"Storage modulus from {' to '.join(ends)}."
 
 
 def paper_viscoelastic(data: PaperData) -> FigureAndText:
-    """Draw mu_visc(v)."""
+    """Draw the viscoelastic friction coefficient over speed."""
     rubbers = data.dry("rubber")
     rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
     text = _listed(
@@ -127,7 +127,7 @@ def paper_viscoelastic(data: PaperData) -> FigureAndText:
 
 
 def dry_shear_stress(data: PaperData) -> FigureAndText:
-    """Draw sigma_f(v) = mu sigma_0 A_0/A, from simulated friction and computed areas."""
+    """Draw the dry shear stress sigma_f(v) = mu sigma_0 A_0/A from simulated friction."""
     stresses = {}
     for name in SURFACES:
         loads = data.read("dry", name, "loads").isel(load=0)
@@ -166,29 +166,29 @@ def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> FigureAndT
 
 
 def dry_traces(data: PaperData) -> FigureAndText:
-    """Draw dry traces of Smooth and Sb-R."""
+    """Draw dry friction traces of Smooth and Sb-R."""
     return _traces(data, [(n, "dry", v) for n in ("Sb-R", "Smooth") for v in (1e-6, 3e-6)])
 
 
 def wet_traces(data: PaperData) -> FigureAndText:
-    """Draw traces in glycerol."""
+    """Draw friction traces in glycerol."""
     wanted = [("Sb-R", "glycerol", 1e-6), *(("Smooth", "glycerol", v) for v in (1e-6, 3e-6))]
     return _traces(data, wanted)
 
 
 def rough_dry_and_wet(data: PaperData) -> FigureAndText:
-    """Draw traces of Sb-R."""
+    """Draw friction traces of Sb-R, dry and in glycerol."""
     return _traces(data, [("Sb-R", "glycerol", 1e-6), ("Sb-R", "dry", 1e-6)])
 
 
 def smooth_dry_and_wet(data: PaperData) -> FigureAndText:
-    """Draw traces of Smooth, and of Sb-R in glycerol."""
+    """Draw friction traces of Smooth, dry and in glycerol, and of Sb-R in glycerol."""
     wanted = [("Sb-R", "glycerol"), ("Smooth", "glycerol"), ("Smooth", "dry")]
     return _traces(data, [(*stroke, 1e-6) for stroke in wanted])
 
 
 def both_rough(data: PaperData) -> FigureAndText:
-    """Draw Stribeck curves of both rough surfaces at the lowest load, with the dry ones."""
+    """Draw the Stribeck curves of both rough surfaces at the lowest load, with dry friction."""
     force = data.forces[0]
     measured = [data.measured(name, medium) for name in ROUGH for medium in ("glycerol", "dry")]
     models = [data.model(name, force) for name in ROUGH]
@@ -196,7 +196,7 @@ def both_rough(data: PaperData) -> FigureAndText:
 
 
 def all_loads(data: PaperData, name: str) -> FigureAndText:
-    """Draw Stribeck curves of a surface."""
+    """Draw the Stribeck curves of a surface at all loads."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     models = [data.model(name, force) for force in data.forces]
     off = [
@@ -215,7 +215,7 @@ def _model_at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
 
 
 def paper_shear_stress(data: PaperData) -> FigureAndText:
-    """Draw sigma_f over load, as fitted and corrected."""
+    """Draw the shear stress sigma_f over load, as fitted and corrected for adhesion."""
     text = _listed(
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
         f"{fit['shear_stress_Pa'] / 1e6:.3g} MPa, "
@@ -226,7 +226,7 @@ def paper_shear_stress(data: PaperData) -> FigureAndText:
 
 
 def smooth_and_theory(data: PaperData) -> FigureAndText:
-    """Draw Smooth at all loads, and the theory at the lowest."""
+    """Draw the Stribeck curves of Smooth at all loads, and the theory at the lowest load."""
     measured = [data.measured("Smooth", "glycerol", force) for force in data.forces]
     force = data.forces[0]
     model = data.read("wet", "Smooth", f"curve_{force:g}N")
@@ -240,7 +240,7 @@ def smooth_and_theory(data: PaperData) -> FigureAndText:
 
 
 def separation(data: PaperData) -> FigureAndText:
-    """Draw p_cont over separation."""
+    """Draw the contact pressure over the mean separation."""
     tables = data.dry("separation")
     text = _listed(
         f"{name}: falls by a factor e in "
@@ -252,7 +252,7 @@ def separation(data: PaperData) -> FigureAndText:
 
 
 def factors(data: PaperData) -> FigureAndText:
-    """Draw flow and friction factors."""
+    """Draw the flow and friction factors over the mean separation."""
     factors = {name: data.read("wet", name, "factors") for name in SURFACES}
     closed = [
         d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in factors.values()
@@ -262,7 +262,7 @@ def factors(data: PaperData) -> FigureAndText:
 
 
 def paper_friction_factor_effect(data: PaperData) -> FigureAndText:
-    """Draw mu(v) at the highest load with and without friction factors."""
+    """Draw friction over speed at the highest load, with and without friction factors."""
     force = data.forces[-1]
     pairs = {name: data.model(name, force) for name in ROUGH}
     text = _listed(
@@ -281,7 +281,7 @@ def _largest_rise(curve: xr.Dataset) -> str:
 
 
 def profiles(data: PaperData, name: str) -> FigureAndText:
-    """Draw profiles across the contact of a surface."""
+    """Draw film and pressure profiles across the contact of a surface."""
     across = data.read("wet", name, "profiles")
     text = _listed(
         f"{speed_text(float(v))}: smallest separation "
@@ -298,7 +298,7 @@ def profiles(data: PaperData, name: str) -> FigureAndText:
 
 
 def bars(data: PaperData, name: str) -> FigureAndText:
-    """Draw error bars of a surface."""
+    """Draw the uncertainty budget of a surface as bars."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     smallest, largest = (
         end(float(end(c.friction_coefficient_std.values)) for c in measured) for end in (min, max)

@@ -1,4 +1,4 @@
-"""List of the figures of the reproduction, with section, sources and captions."""
+"""List of the figures of the reproduction, with section, sources and caption."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _SLIP = (
 
 @dataclass(frozen=True)
 class PlannedFigure:
-    """Figure of the reproduction.
+    """A figure of the reproduction and how it is made.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class PlannedFigure:
         return f"figures/{self.name}.svg"
 
     def has(self, row: Mapping[str, Any]) -> bool:
-        """Whether a published number belongs to it."""
+        """Return whether a published number belongs to this figure."""
         return any(
             row["quantity"] == quantity
             and surface in ("", row["surface"])
@@ -264,14 +264,14 @@ BY_NAME = {figure.name: figure for figure in FIGURES}
 
 @dataclass(frozen=True)
 class DrawTask:
-    """Figure to draw."""
+    """A figure that is to be drawn."""
 
     name: str
     data: PaperData
 
 
 def draw_paper_figure(task: DrawTask) -> Json:
-    """Draw a figure into the results and return its record."""
+    """Draw a figure into the results folder, and return its record."""
     known = BY_NAME[task.name]
     with DRAWING:
         figure, text = known.draw(task.data)
@@ -279,7 +279,7 @@ def draw_paper_figure(task: DrawTask) -> Json:
         caption = f"{known.caption} {text}" if known.has_text else known.caption
         data = write_figure(figure, task.data.folder, known.file)
         record = asdict(FigureRecord(known.file, data, caption, alt))
-    del record["kind"]  # the figure belongs to a section
+    del record["kind"]  # the section already says what kind of figure it is
     return record | {
         "name": known.name,
         "section": known.section,

@@ -1,4 +1,4 @@
-"""Effect of Hurst exponents above 1 of the stand-in spectra on slope and contact."""
+"""Effect of the replacement spectra's Hurst exponents above 1 on slope and contact."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tribolab.records.surfaces.hurst_words import hurst_verdict
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, moment
 
-_SLOPE = 3  # q^3 C: the integrand of the mean square slope
-_ENDLESS = 1e30  # 1/m; practically infinite
+_SLOPE = 3  # order of the moment of q^3 C, the mean square slope
+_ENDLESS = 1e30  # 1/m, practically infinite wavenumber
 
 
 @dataclass(frozen=True)
 class SteepSpectrum:
-    """Stand-in spectrum with a Hurst exponent above 1.
+    """Replacement spectrum with a Hurst exponent above 1.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class SteepSpectrum:
 
 
 def steep_spectra() -> list[Json]:
-    """Return a record for the page on each stand-in spectrum with H above 1.
+    """Return a record for each replacement spectrum with H above 1, for the page.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def _judged(name: str, spectrum: SelfAffine) -> SteepSpectrum:
 
 
 def _half(spectrum: SelfAffine, whole: float) -> float:
-    """Return the wavenumber [1/m] below which half of the mean square slope is contained."""
+    """Return the wavenumber [1/m] up to which half of the mean square slope is reached."""
 
     def missing(log_q: float) -> float:
         return moment(replace(spectrum, high=math.exp(log_q)), _SLOPE) / whole - 0.5

@@ -1,4 +1,4 @@
-"""Virtual rig in place of the paper's laboratory, and the analysis of its files."""
+"""Virtual rig that replaces the paper's laboratory, and the analysis of its files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FOLDER = "simulated"
 
 @dataclass(frozen=True)
 class Laboratory:
-    """Programme of the virtual rig; by default that of the paper, each condition once.
+    """Programme of the virtual rig; by default that of the paper, with one run per condition.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def simulate_laboratory(
 def analyse_laboratory(
     campaign: Campaign, folder: Path, executor: Executor | None, progress: Progress
 ) -> tuple[Outcome, tuple[PlannedSurface, ...]]:
-    """Analyse the raw files of the virtual rig with the normal pipeline.
+    """Return the analysis of the virtual rig's files, by the same pipeline as for real ones.
 
     Returns
     -------

@@ -55,7 +55,7 @@ def reproduce(
     progress: Progress | None = None,
     laboratory: lab.Laboratory | None = None,
 ) -> Reproduction:
-    """Reproduce the figures and numbers of the reference paper, with a page.
+    """Return figures and numbers of the reference paper, reproduced, and write a web page.
 
     Parameters
     ----------
@@ -99,12 +99,12 @@ def reproduce(
 def _compute(
     outcome: Outcome, scans: Sequence[PlannedSurface], pool: Executor | None, tell: Progress
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Compute the theory, compare the numbers, and fit the simulated curves."""
+    """Compute the theory, compare its numbers with the paper's, and fit the simulated curves."""
     folder = outcome.folder
     tasks = [PaperTask("published", "", folder)]
     for name in SURFACES:
         wet = [c for c in outcome.curves if (c.surface, c.medium) == (name, "glycerol")]
-        # for Smooth the paper computes the lowest load only
+        # the paper computes Smooth at the lowest load only
         forces = sorted(c.normal_force for c in wet if c.normal_force is not None)
         forces = forces[: 1 if name == "Smooth" else None]
         tasks.append(PaperTask("wet", name, folder, tuple(forces), tuple(wet)))
@@ -120,7 +120,7 @@ def _compute(
 
 
 def _correct_stress(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
-    """Divide the fitted shear stresses by the growth of the area by adhesion in glycerol."""
+    """Return fitted shear stresses divided by the increase of area due to adhesion in glycerol."""
     data = PaperData(folder, (), (), fits)
     growth = []
     for fit in fits.to_dict("records"):

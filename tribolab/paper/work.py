@@ -1,4 +1,4 @@
-"""Tasks of the reproduction, each computed by a worker into its own data file."""
+"""Tasks of the reproduction; each is computed in a worker process and has its own data file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import CurveOutcome
 
 GroupsAndRows = tuple[dict[str, "xr.Dataset"], list[Row]]  # groups of a file, and rows
-_LOWEST_WAVENUMBER = 423.0  # 1/m, of the stand-in spectra
+_LOWEST_WAVENUMBER = 423.0  # 1/m, lowest wavenumber of the replacement spectra
 
 
 @dataclass(frozen=True)
@@ -60,12 +60,12 @@ class PaperTask:
 
 
 def data_file(folder: Path, kind: str, surface: str) -> Path:
-    """Return the data file of a task."""
+    """Return the path of a task's data file."""
     return folder / "data" / f"{kind}_{surface}.nc"
 
 
 def compute(task: PaperTask) -> list[Row]:
-    """Compute a task, write its data file, and return its rows if it has any."""
+    """Compute a task, write its data file, and return its table rows, if any."""
     groups, rows = _KINDS[task.kind](task)
     if groups:
         root = _root(task)
@@ -81,7 +81,7 @@ def _root(task: PaperTask) -> xr.Dataset:
 
 
 def _origin(task: PaperTask) -> dict[str, str]:
-    """Return the sources of a task's result: files, or the published constants alone."""
+    """Return the sources of a task's result: files, or the published constants only."""
     if task.scans is not None:
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
         return source_attributes(sources_of_surface(task.scans)) | {
@@ -101,7 +101,7 @@ def _dry(task: PaperTask) -> GroupsAndRows:
 
 
 def _spectrum(task: PaperTask) -> GroupsAndRows:
-    """Return the spectrum of the simulated profiles, extrapolated as for any surface."""
+    """Return the spectrum of the simulated profiles, extrapolated as usual."""
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
     checked = usable_scans(task.scans)
@@ -121,14 +121,14 @@ def _wet(task: PaperTask) -> GroupsAndRows:
 
 
 def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> Row:
-    """Fit the shear stress to a simulated curve, as the authors did."""
+    """Return the shear stress fitted to a simulated curve in the way of the paper's authors."""
     fit = fit_shear_stress(
         read_netcdf(task.folder / curve.data_file),
         xu2026.contact,
         xu2026.psd(task.surface),
         xu2026.system.viscosity,
         xu2026.contact.load(force),
-        # one run per load does not determine the repeatability; the rig's is known
+        # one run per load does not show the repeatability, but that of the rig is known
         settings=FitSettings(common_error=Scatter().repeat),
     )
     plain, corrected = (
@@ -138,7 +138,7 @@ def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> 
         "surface": task.surface,
         "normal_force_N": force,
         "printed_shear_stress_Pa": printed,
-        # gives the solid friction over the measured speeds
+        # solid friction over the measured speeds
         "printed_with_corrected_area_Pa": printed * (plain @ corrected) / (corrected @ corrected),
         "shear_stress_Pa": fit.shear_stress,
         "shear_stress_low_Pa": fit.shear_stress - fit.half_interval,

@@ -1,4 +1,4 @@
-"""Sliding mode of a contact: evidence, verdict, and wording."""
+"""Sliding mode of a contact: evidence, verdict and wording."""
 
 from __future__ import annotations
 

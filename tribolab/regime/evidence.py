@@ -1,4 +1,4 @@
-"""Pieces of evidence on the sliding mode, each a sentence with its numbers."""
+"""Evidence for and against an adhesion-controlled sliding mode, in sentences with numbers."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from tribolab.regime.model import Mode
 
 _MAX_SPEED_RATIO = (
-    10.0  # ratio of speeds above which a plateau and the model's boundary regime differ
+    10.0  # ratio of speeds above which the ends of plateau and boundary regime differ
 )
-_MIN_SLIP_RATIO = 2.0  # ratio of the friction of uniform slip to that measured
-_MIN_DROP_RATIO = 1.5  # ratio of drops at different speeds
-_MIN_FALL = 0.10  # relative; a smaller fall of friction between two speeds is ignored
-_PLATEAU_END = 0.8  # of the plateau's friction: below, the plateau has ended
+_MIN_SLIP_RATIO = 2.0  # least ratio of uniform-slip friction to measured friction
+_MIN_DROP_RATIO = 1.5  # least ratio of the drops at different speeds
+_MIN_FALL = 0.10  # relative; smaller decreases of friction between two speeds are ignored
+_PLATEAU_END = 0.8  # share of the plateau's friction below which the plateau has ended
 
 
 def _moving(slip: xr.Dataset) -> xr.Dataset:
@@ -54,7 +54,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     every = Count(slip.sizes["sliding_speed"])
     text = f"the traces oscillate at {count} of {every:speed|speeds} ({kinds})"
     drop = float(moving["drop"].values[first])
-    if np.isfinite(drop):  # an oscillation need not show whole cycles
+    if np.isfinite(drop):  # an oscillation may have no complete cycles
         text += f"; at {speed_text(speed[first])} friction drops by {friction_text(drop)}"
     if np.isfinite(drop):
         text += _drop_distance(moving.isel(sliding_speed=first))
@@ -68,7 +68,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def _drop_distance(row: xr.Dataset) -> str:
-    """Return the distance between drops as text, with the spectral period if periods scatter."""
+    """Return the distance between drops as text, with the spectral period if it scatters."""
     spectral = 1e6 * float(row["dominant_wavelength"]) if "dominant_wavelength" in row else np.nan
     apart = 1e6 * float(row["recurrence_distance"]) if "recurrence_distance" in row else np.nan
     kind = str(row["regularity"].item()) if "regularity" in row else ""
@@ -83,7 +83,7 @@ def _drop_distance(row: xr.Dataset) -> str:
 
 
 def macroscopic_adhesion(known: Mode) -> Evidence | None:
-    """Return evidence on whether adhesion reaches the macroscopic scale."""
+    """Return evidence on whether adhesion acts at the macroscopic scale."""
     work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
     if work is None:
         text = "the work of adhesion at magnification 1 is not known: it requires scans, a "
@@ -102,7 +102,7 @@ def macroscopic_adhesion(known: Mode) -> Evidence | None:
 
 
 def vanishing_adhesion(known: Mode) -> Evidence | None:
-    """Return evidence if adhesion may vanish within its uncertainty."""
+    """Return evidence if the work of adhesion may be zero within its uncertainty."""
     bounds = known.work_of_adhesion_range
     if not known.work_of_adhesion or bounds is None or bounds[0] > 0:
         return None
@@ -111,7 +111,7 @@ def vanishing_adhesion(known: Mode) -> Evidence | None:
 
 
 def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
-    """Return evidence on the fall of friction with speed, which rig stick-slip requires.
+    """Return evidence on a decrease of friction with speed, without which a rig cannot stick-slip.
 
     A spring that pulls a body against friction that falls with speed causes stick-slip of fixed
     wavelength, whatever happens at the interface.
@@ -138,7 +138,7 @@ def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
 
 
 def strength(slip: xr.Dataset | None) -> Evidence | None:
-    """Return evidence on the weakening of the oscillation with speed, as in forced wetting."""
+    """Return evidence on an oscillation that weakens with speed, as in forced wetting."""
     if slip is None or not slip.sizes.get("sliding_speed", 0):
         return None
     moving = _moving(slip)
@@ -158,7 +158,7 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def scaling(slip: xr.Dataset | None) -> Evidence | None:
-    """Return evidence if a resonance with a fixed frequency is present at all speeds."""
+    """Return evidence if the oscillation is a resonance: its frequency does not depend on speed."""
     if slip is None:
         return None
     if (own := slip.attrs.get("resonance_frequency_Hz")) is not None:
@@ -171,7 +171,7 @@ def scaling(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def repeating(slip: xr.Dataset | None) -> Evidence | None:
-    """Return evidence of waves that repeat with each turn of the rig and were removed."""
+    """Return evidence of waves that repeat with each turn of the rig, and were removed."""
     text = rig_wave_text(slip)
     if not text:
         return None
@@ -179,7 +179,7 @@ def repeating(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | None:
-    """Compare the ends of the friction plateau and of the model's boundary regime."""
+    """Return evidence from the speeds at which plateau and computed boundary regime end."""
     end, computed = numbers["boundary_end_m_s"], numbers["model_boundary_end_m_s"]
     if model is None or np.isnan(end) or "solid_load_share" not in model:
         return None
@@ -196,7 +196,7 @@ def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | N
 
 
 def misfit(numbers: dict[str, float]) -> Evidence | None:
-    """Return evidence on whether the mixed-lubrication model is sufficient."""
+    """Return evidence on whether the mixed-lubrication model describes the curve."""
     off = numbers["model_misfit"]
     if np.isnan(off):
         return None
@@ -221,7 +221,7 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
 
 
 def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
-    """Return evidence from the friction of uniform slip at the shear stress of rough surfaces."""
+    """Return evidence from the friction of uniform slip with the shear stress of rough surfaces."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
     stress = known.rough_shear_stress
     if stress is None or not uniform > _MIN_SLIP_RATIO * seen > 0:  # nothing to explain
@@ -238,7 +238,7 @@ def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
 
 
 def forced_wetting(curve: xr.Dataset, slip: xr.Dataset | None, known: Mode) -> dict[str, float]:
-    """Return the speeds between which forced wetting starts: stick-slip ends, or friction falls."""
+    """Return the speeds between which forced wetting starts: stick-slip or high friction ends."""
     if not known.fluid or slip is None:
         return {}
     speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values

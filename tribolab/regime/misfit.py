@@ -1,4 +1,4 @@
-"""Goodness of fit of a model to a measured curve, with the errors of both."""
+"""Goodness of fit of a model to a measured curve, allowing for the errors of both."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from scipy import special
 
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 
-SUFFICIENT = 0.10  # rms misfit relative to the largest friction below which a model is sufficient
+SUFFICIENT = 0.10  # rms misfit over maximum friction, below which a model is sufficient
 _CHANCE = 0.05  # p value below which a misfit is significant
-_FITTED = 1  # number of fitted parameters: the shear stress
+_FITTED = 1  # number of fitted parameters, the shear stress
 
 
 def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> dict[str, float]:
-    """Return the misfit of a model to a measured curve, its p value, and its error.
+    """Return the misfit of a model to a measured curve, its p value, and its standard error.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
 
 
 def _error_bound(errors: PointErrors, solid: np.ndarray) -> float:
-    """Return the upper 95 % bound of the rms of the errors, after fitting a level to them."""
+    """Return the upper 95 % bound of the rms of the errors that remain after fitting a level."""
     covariance = errors.covariance
     if np.any(solid > 0):
         taken = errors.whitened(solid)
@@ -91,7 +91,7 @@ def _error_bound(errors: PointErrors, solid: np.ndarray) -> float:
 
 
 def is_sufficient(numbers: dict[str, float]) -> bool | None:
-    """Return whether a model is sufficient; None if the errors are too large to decide.
+    """Return whether the model is sufficient; None if the errors are too large to decide.
 
     A model is sufficient if its misfit plus the errors is below a tenth of the largest friction, or
     if the errors explain the misfit and could have revealed one of a tenth. It is not sufficient if

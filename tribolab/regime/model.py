@@ -1,4 +1,4 @@
-"""Contact properties, evidence, and verdicts of the sliding mode."""
+"""Inputs of the sliding mode: properties of a contact, and pieces of evidence."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UNKNOWN = "not known"
 
 @dataclass(frozen=True)
 class Mode:
-    """Properties of a contact besides its curves; in SI, None if unknown.
+    """Properties of a contact besides its curves, in SI; None if unknown.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ FOR, AGAINST, UNTOUCHED = "for", "against", "neutral"
 
 
 class Evidence(NamedTuple):
-    """Piece of evidence: for or against an adhesion-controlled mode, or neutral."""
+    """Piece of evidence for or against an adhesion-controlled sliding mode, or neutral."""
 
     side: str
     text: str

@@ -1,4 +1,4 @@
-"""Boundary, mixed or hydrodynamic regime of measured and computed curves."""
+"""Boundary, mixed and hydrodynamic regimes of measured and computed Stribeck curves."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 import xarray as xr
 
 _BOUNDARY, _MIXED, _HYDRODYNAMIC = "boundary", "mixed", "hydrodynamic"
-_FLAT = 0.15  # relative change of friction along a plateau
-_SIGMAS = 3.0  # or so many standard errors
-_RISE = 1.2  # ratio of friction to its minimum in the hydrodynamic regime
-_CARRIED = 0.9  # share of the load on one side that decides a regime
+_FLAT = 0.15  # relative change of friction up to which a curve is a plateau
+_SIGMAS = 3.0  # the same in standard errors, whichever is larger
+_RISE = 1.2  # ratio of friction to its minimum from which the regime is hydrodynamic
+_CARRIED = 0.9  # share of the load carried by solid or fluid that decides the regime
 
 
 def measured_regimes(curve: xr.Dataset) -> np.ndarray:
-    """Return the lubrication regime at each speed of a measured curve, from its shape.
+    """Return the regime at each speed of a measured curve, from the shape of the curve.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def measured_regimes(curve: xr.Dataset) -> np.ndarray:
 
 
 def model_regimes(curve: xr.Dataset) -> np.ndarray:
-    """Return the lubrication regime at each speed of a computed curve, from the shares of the load.
+    """Return the regime at each speed of a computed curve, from the load shares of solid and fluid.
 
     Parameters
     ----------
@@ -80,6 +80,6 @@ def model_regimes(curve: xr.Dataset) -> np.ndarray:
 
 
 def end_of_boundary(speed: np.ndarray, regimes: np.ndarray) -> float:
-    """Return the highest speed of the boundary regime [m/s]; NaN if there is none."""
+    """Return the highest speed in the boundary regime [m/s]; NaN if there is none."""
     inside = speed[regimes == _BOUNDARY]
     return float(inside.max()) if inside.size else float("nan")

@@ -20,10 +20,10 @@ _CURVES = ("friction_coefficient", "waveform", "friction_coefficient_low")
 
 
 class SlidingModes(Conditions[SlidingMode]):
-    """Sliding modes of several contacts: a `SlidingMode` for each condition."""
+    """Sliding modes of several contacts: one `SlidingMode` for each condition."""
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return a table of the evidence and of decisive measurements, one row each."""
+        """Return a table with one row for each piece of evidence and each decisive measurement."""
         rows = [
             {**labels, "verdict": mode.verdict, "side": side, "text": text}
             for labels, mode in self
@@ -32,7 +32,7 @@ class SlidingModes(Conditions[SlidingMode]):
         return pd.DataFrame(rows, columns=[*self.results.dims, "verdict", "side", "text"])
 
     def __repr__(self) -> str:
-        """Return each verdict as a sentence, with the evidence for and against it."""
+        """Return each verdict as a sentence, with the evidence on both sides."""
         lines = []
         for labels, mode in self:
             lines.append(f"{_words(labels)}: {mode.text}")
@@ -41,7 +41,7 @@ class SlidingModes(Conditions[SlidingMode]):
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """Return HTML of each verdict, with the evidence for and against it below."""
+        """Return HTML of each verdict, with the evidence on both sides below it."""
         return "".join(
             html_list(f"{_words(labels)}: {mode.text}", mode.entries) for labels, mode in self
         )
@@ -130,7 +130,7 @@ def _condition_mode(
 def _condition_part(
     data: xr.Dataset | None, labels: Mapping[Hashable, object]
 ) -> xr.Dataset | None:
-    """Return the part of the data that belongs to one condition; None if there is none."""
+    """Return the part of the data for one condition; None if there is none."""
     if data is None:
         return None
     for dim, label in labels.items():
@@ -146,7 +146,7 @@ def _condition_part(
 
 
 def _value_mask(values: xr.DataArray) -> np.ndarray:
-    """Return a mask of the entries at which curves on common axes have a value or a text."""
+    """Return a mask of the entries at which a curve has a value or text."""
     return values.to_numpy() != "" if values.dtype.kind in "OU" else values.notnull().to_numpy()
 
 

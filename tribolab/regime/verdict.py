@@ -1,4 +1,4 @@
-"""Sliding mode of a contact: steady as in the model, or unstable due to adhesion."""
+"""Sliding mode of a contact: steady as the model assumes, or unstable due to adhesion."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tribolab.units.stamping import stamp
 
 @dataclass(frozen=True)
 class SlidingMode:
-    """Verdict on the sliding mode of a contact, with its evidence.
+    """Sliding mode of a contact: the verdict and its evidence.
 
     Parameters
     ----------
@@ -65,12 +65,12 @@ class SlidingMode:
 
     @property
     def entries(self) -> list[tuple[str, str]]:
-        """Evidence, each with its side, and the measurements that would decide."""
+        """Pieces of evidence with their sides, and the measurements that would decide."""
         pieces = [(piece.side, piece.text) for piece in self.evidence]
         return [*pieces, *(("would decide", text) for text in self.decide)]
 
     def _repr_html_(self) -> str:
-        """Return the verdict and its evidence as HTML."""
+        """Return HTML of the verdict and its evidence."""
         return html_list(self.text, self.entries)
 
 
@@ -83,7 +83,7 @@ def sliding_mode(
     band: xr.Dataset | None = None,
     name: str = "the contact",
 ) -> SlidingMode:
-    """Assess the evidence for and against an adhesion-controlled sliding mode.
+    """Return whether sliding is controlled by adhesion, from the evidence on both sides.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def sliding_mode(
 
 
 def oscillating_speeds(slip: xr.Dataset | None) -> np.ndarray:
-    """Return the speeds [m/s] with significant stick-slip."""
+    """Return the speeds [m/s] at which stick-slip is significant."""
     if slip is None or "waveform" not in slip:
         return np.zeros(0)
     return slip["sliding_speed"].values[oscillates(slip["waveform"].values)]
@@ -221,7 +221,7 @@ def _curve(
 
 
 def _count_in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
-    """Return the number of measured speeds at which friction agrees with the model's 95 % band."""
+    """Return at how many measured speeds friction lies within the model's 95 % band."""
     if band is None:
         return {"speeds_in_band": float("nan"), "speeds_with_band": float("nan")}
     place = np.log(band["sliding_speed"].values)

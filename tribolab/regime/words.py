@@ -1,4 +1,4 @@
-"""Text of the verdict on the sliding mode, made from the evidence only."""
+"""Text of the verdict on the sliding mode, composed from the evidence."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from tribolab.regime.model import Evidence, Mode
 
 _STEADY, SAW, SINE, REVERSED = CLASSES
-_MAX_WAVELENGTH = 0.5e-3  # m; shorter waves are neither turns of a track nor pitches of a screw
-_MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # over which a wavelength is fixed
+_MAX_WAVELENGTH = 0.5e-3  # m; longer waves may be turns of a track or the pitch of a screw
+_MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # over which a wavelength counts as constant
 
 
 def friction_text(value: float) -> str:
-    """Return a friction coefficient, or a change of it, as text with two digits."""
+    """Return a friction coefficient, or its change, as text with two digits."""
     return f"{value:.2g}"
 
 
@@ -32,7 +32,7 @@ def percent_text(share: float) -> str:
 
 
 def rig_wave_text(slip: xr.Dataset | None) -> str:
-    """Return a text on waves that repeat with each turn of the rig, with speeds and size; or ""."""
+    """Return a text on waves that repeat with each turn of the rig; "" without any."""
     if slip is None or "rig_wave" not in slip:
         return ""
     kinds = slip["rig_wave"].values.astype(str)
@@ -43,7 +43,7 @@ def rig_wave_text(slip: xr.Dataset | None) -> str:
     what = str(names[np.argmax(counts)]).replace("run-out: ", "run-out of the disc: friction ")
     text = f"{what} at {seen.sum()} of {Count(kinds.size):speed|speeds}"
     swing = slip["rig_swing"].values if "rig_swing" in slip else np.full(kinds.size, np.nan)
-    if np.isfinite(swing).any():  # for forces alone the unit differs
+    if np.isfinite(swing).any():  # if only forces were measured, the unit differs
         text += f", by up to {friction_text(float(np.nanmax(swing)))}"
     return text
 
@@ -51,7 +51,7 @@ def rig_wave_text(slip: xr.Dataset | None) -> str:
 def verdict_text(
     verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
 ) -> str:
-    """Return the verdict as one sentence."""
+    """Return the verdict as a sentence."""
     text = _verdict_text(verdict, numbers, slip, modelled)
     return f"{text}; {wave}" if (wave := rig_wave_text(slip)) else text
 
@@ -105,7 +105,7 @@ def _verdict_text(
 def suggestions(
     verdict: str, numbers: dict[str, float], known: Mode, slip: xr.Dataset | None
 ) -> tuple[str, ...]:
-    """Return the measurements that would decide."""
+    """Return the measurements that would decide the sliding mode."""
     length = _fixed_wavelength(slip)
     compare: tuple[str, ...] = ()
     if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > _MAX_WAVELENGTH:
@@ -119,7 +119,7 @@ def suggestions(
 
 
 def _fixed_wavelength(slip: xr.Dataset | None) -> float:
-    """Return the common wavelength [m] of the traces at several speeds; NaN if they differ."""
+    """Return the wavelength [m] common to traces at several speeds; NaN if they differ."""
     if slip is None or "dominant_wavelength" not in slip:
         return np.nan
     moving = oscillating(slip["waveform"].values)
@@ -191,7 +191,7 @@ def paragraph(
     decide: Sequence[str],
     numbers: dict[str, float],
 ) -> str:
-    """Return verdict, evidence and decisive measurements as a short paragraph."""
+    """Return the verdict, its evidence and decisive measurements as a short paragraph."""
     parts = [f"{name[:1].upper()}{name[1:]}: {text}."]
     for side, opening in (
         ("for", "For an adhesion-controlled mode:"),

@@ -1,4 +1,4 @@
-"""Comparison of the paper's numbers with computed numbers."""
+"""Comparison of the numbers in the paper with computed ones."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _OWN: dict[str, Callable[[Published], Own | None]] = {
 
 
 def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataFrame:
-    """Compute the published numbers of the paper, and compare them.
+    """Return the published numbers of the paper, compared with computed ones.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
 
 
 def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | float]:
-    """Return published and computed number in the printed unit, and their difference."""
+    """Return the published and computed number in the printed unit, and their difference."""
     percent = 0.01 if "%" in row.text else 1.0
     unit = "" if row.unit == "1" else f" {row.unit}"
     if isinstance(computed, Measured):
@@ -102,7 +102,7 @@ def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | f
         )
         difference = computed.value / row.si - 1 if row.si else math.nan
         tolerance = computed.tolerance
-        # a bound is met or not; a relative difference would be meaningless
+        # bounds are met or not, so they have no relative difference
         if row.relation.startswith(BOUNDS):
             difference = math.nan
     return {

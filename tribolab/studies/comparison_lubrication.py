@@ -1,4 +1,4 @@
-"""Computation of the paper's numbers on flow, mixed lubrication and shear stresses."""
+"""Computed values for the paper's numbers on flow, mixed lubrication and shear stress."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from tribolab.studies.theory import Theory
 from tribolab.studies.verdict import Computed, Measured, Own
 
 _ROUGH, _LESS_ROUGH = "Sb-R", "Sb-S"
-_DRY_SHARE = 0.99  # share of the dry friction that defines the boundary regime
-_GONE = 1e-4  # level of phi_p
+_DRY_SHARE = 0.99  # share of the dry friction above which lubrication is boundary lubrication
+_GONE = 1e-4  # phi_p below which there is practically no flow
 
 
 def _percolation(row: Published, theory: Theory) -> Computed:
@@ -74,7 +74,7 @@ COMPUTE_LUBRICATION: dict[str, Callable[[Published, Theory], Computed | Measured
 
 
 def _own_stress(row: Published) -> Own | None:
-    """Return the stress of Sb-R from that of Sb-S and the printed ratio; either may be wrong."""
+    """Return the shear stress of Sb-R by that of Sb-S and the printed ratio, which may be wrong."""
     if row.surface != _ROUGH:
         return None
     ratio = find_published(xu2026.published, "corrected_shear_stress_ratio", "Sb-R / Sb-S")
@@ -90,7 +90,7 @@ def _own_stress(row: Published) -> Own | None:
 
 
 def _own_ratio(row: Published) -> Own:
-    """Return the ratio at the load where the paper's own numbers deviate most from it."""
+    """Return the ratio at the load at which the paper's own numbers differ most from it."""
     low, high = _growth_ratio()
     every = []
     for load in _loads():
@@ -122,7 +122,7 @@ def _loads() -> list[str]:
 
 
 def _growth_ratio() -> tuple[float, float]:
-    """Return the ratio of the growth of area by adhesion of Sb-R and Sb-S, within rounding."""
+    """Return the ratio of the area increases of Sb-R and Sb-S by adhesion, as a range."""
     areas = {
         (surface, which): _rounding_range(
             find_published(xu2026.published, "contact_area_ratio", surface, f"0.1 MPa; {which}")
@@ -139,7 +139,7 @@ def _growth_ratio() -> tuple[float, float]:
 
 
 def _rounding_range(row: Published) -> tuple[float, float]:
-    """Return the range of numbers that round to the printed one [SI]."""
+    """Return the range of values that are rounded to the printed one [SI]."""
     low, high = row.ends
     return low - row.last_digit / 2, high + row.last_digit / 2
 

@@ -1,4 +1,4 @@
-"""Published numbers as printed: text, value, and precision."""
+"""Published numbers as printed: text, value and precision."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pathlib import Path
 
 from tribolab.core.errors import AnalysisError, ReadError
 
-# Printed units in SI; "h_rms" is a multiple of the roughness.
+# Printed units in SI; "h_rms" means multiples of the rms roughness.
 _SI = {"1": 1.0, "m/s": 1.0, "h_rms": 1.0, "MPa": 1e6, "mm": 1e-3, "um": 1e-6, "mJ/m2": 1e-3}
 _NUMBER = re.compile(r"\d+(?:\.(\d+))?(?:e([+-]?\d+))?")
 
 
 @dataclass(frozen=True)
 class Published:
-    """Number printed in a paper.
+    """Number as printed in a paper.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Published:
     note: str
 
     def __post_init__(self) -> None:
-        """Raise an error for text without a usable number."""
+        """Raise an error if the text does not contain a usable number."""
         if self.unit not in _SI or not _NUMBER.search(self.text):
             raise ReadError(
                 f"published {self.quantity}: '{self.text}' in '{self.unit}' is no number in a unit "
@@ -59,35 +59,35 @@ class Published:
 
     @property
     def factor(self) -> float:
-        """SI value of the printed unit."""
+        """Value of the printed unit in SI."""
         return _SI[self.unit]
 
     @property
     def relation(self) -> str:
-        """Words before the number: ``""``, ``"about"``, ``"at most"``, ``">"``, ``"below"``."""
+        """Words before the number: ``""``, ``"about"``, ``"at most"``, ``">"`` or ``"below"``."""
         return self.text[: self._number.start()].strip()
 
     @property
     def si(self) -> float:
-        """Number in SI; the middle of a range."""
+        """Number in SI, for a range its middle."""
         return sum(self.ends) / 2
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Ends of a range in SI; both equal for a single number."""
+        """Ends of a printed range in SI; equal for a single number."""
         numbers = [float(match[0]) * self._scale for match in _NUMBER.finditer(self.text)]
         return min(numbers), max(numbers)
 
     @property
     def last_digit(self) -> float:
-        """One unit of the last printed digit, in SI."""
+        """One unit in the last printed digit, in SI."""
         match = self._number
         return 10.0 ** (int(match[2] or 0) - len(match[1] or "")) * self._scale
 
     @property
     def _number(self) -> re.Match[str]:
         match = _NUMBER.search(self.text)
-        assert match is not None  # text without a number is refused when the row is created
+        assert match is not None  # text without a number was refused when the object was created
         return match
 
     @property
@@ -96,7 +96,7 @@ class Published:
 
 
 def read_published(path: str | Path) -> tuple[Published, ...]:
-    """Read a table of published numbers.
+    """Return the published numbers from a table.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def read_published(path: str | Path) -> tuple[Published, ...]:
 def find_published(
     table: tuple[Published, ...], quantity: str, surface: str, condition: str = ""
 ) -> Published:
-    """Find the row of a quantity, a surface and a part of the condition's text.
+    """Return the published number with given quantity, surface, and part of its condition.
 
     Raises
     ------

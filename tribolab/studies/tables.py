@@ -1,4 +1,4 @@
-"""Theoretical results for the reference system over its pressures, speeds and loads."""
+"""Theoretical results for the reference system at its pressures, speeds and loads."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from tribolab.studies import xu2026
 from tribolab.units.stamping import labelled, stamp
 
 SurfaceGroups = dict[str, xr.Dataset]
-# Work of adhesion [J/m2] as rounded and used in the paper.
+# Work of adhesion [J/m2] as the paper rounds and uses it.
 MEDIA = {row.condition: row.si for row in xu2026.published if row.quantity == "work_of_adhesion"}
-_PROFILE_SPEEDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # m/s, in App. B
+_PROFILE_SPEEDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # m/s, speeds of the profiles in App. B
 _PRESSURES = np.geomspace(1e-3, 1.0, 46) * 1e6  # Pa
-# m/s; rounded, to remove duplicates that differ in the last digit
+# m/s, rounded so that speeds equal except for the last digit appear once
 _SPEEDS = np.unique([*(float(f"{v:.3g}") for v in np.geomspace(1e-9, 1e-1, 33)), *xu2026.SPEEDS])
-_SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # relative to h_rms
-_MAX_PRESSED = 0.3  # share of E* up to which the separation is shown
+_SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # in units of h_rms
+_MAX_PRESSED = 0.3  # pressures up to this share of E* are shown
 
 
 def dry_contact(name: str) -> SurfaceGroups:
-    """Compute contact, adhesion and rubber friction of a surface without a fluid.
+    """Return contact, adhesion and rubber friction of a surface without a liquid.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def dry_contact(name: str) -> SurfaceGroups:
     >>> sorted(dry_contact("Sb-R"))
     ['adhesion', 'contact', 'effective_work', 'loads', 'psd', 'rubber', 'separation']
     """
-    # imported late for a quick start
+    # imported late: scipy loads slowly
     from tribolab.contact.persson import contact_area_ratio
     from tribolab.contact.separation import separation_table
     from tribolab.rubber.friction import viscoelastic_friction
@@ -70,7 +70,7 @@ def dry_contact(name: str) -> SurfaceGroups:
         ),
         "rubber": viscoelastic_friction(speed, lowest, psd, PDMS_STAND_IN),
     }
-    if name == "Smooth":  # adhesion nearly completes that contact (Sec. 6)
+    if name == "Smooth":  # adhesion makes its contact almost complete (Sec. 6)
         groups["rubber_complete"] = viscoelastic_friction(
             speed, lowest, psd, PDMS_STAND_IN, complete_contact=True
         )
@@ -78,8 +78,8 @@ def dry_contact(name: str) -> SurfaceGroups:
 
 
 def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
-    """Solve adhesion at zero pressure, at the loads and over the grid in one call."""
-    # imported late for a quick start
+    """Return adhesion at zero pressure, at the loads and on a grid, all solved together."""
+    # imported late: scipy loads slowly
     from tribolab.contact.adhesive_contact import adhesion
     from tribolab.contact.hertz import hertz_mean_pressure
 
@@ -97,15 +97,15 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
     parts = [
         xr.concat(both, media, combine_attrs="drop_conflicts") for both in (over, rest, loaded)
     ]
-    # pressures replace loads here, so that loads keep their order and name
+    # pressures as dimension, so that loads keep their order and name
     loads = parts[2].rename(pressure="load").assign_coords(load=forces / xu2026.contact.length)
     loads = loads.assign(pressure=("load", at_loads), normal_force=("load", forces))
     return stamp(parts[0]), stamp(parts[1]), stamp(loads)
 
 
 def modulus_table() -> xr.Dataset:
-    """Return storage and loss modulus of the stand-in for the paper's rubber over frequency."""
-    # imported late for a quick start
+    """Return the storage and loss modulus over frequency that replace the paper's rubber."""
+    # imported late: scipy loads slowly
     from tribolab.rubber.modulus import PDMS_STAND_IN
 
     omega = np.geomspace(1e-2, 1e13, 226)
@@ -116,7 +116,7 @@ def modulus_table() -> xr.Dataset:
 
 
 def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> SurfaceGroups:
-    """Compute the mixed lubrication of a surface in glycerol.
+    """Return the mixed lubrication of a surface in glycerol.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
         ``curve_<force>N`` over the sliding speed, with the shear stress that the paper fitted
         at that force (Smooth: that of the lowest); ``profiles`` at the lowest force; ``factors``.
     """
-    # imported late for a quick start
+    # imported late: scipy loads slowly
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.stribeck import stribeck_curve
 
@@ -145,7 +145,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
         groups[f"curve_{force:g}N"] = curve.assign_attrs(
             surface=name, medium="glycerol", normal_force_N=force
         )
-    if name != "Smooth":  # the paper shows no profiles of it
+    if name != "Smooth":  # the paper shows no profiles of Smooth
         groups["profiles"] = _profiles(psd, xu2026.contact.load(min(forces)))
     factors = flow_factors(psd)
     groups["factors"] = factors.dataset(_SEPARATIONS * factors.rms_roughness)
@@ -153,7 +153,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
 
 
 def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
-    # imported late for a quick start
+    # imported late: scipy loads slowly
     from tribolab.lubrication.film import film_profile
 
     profiles = [

@@ -1,4 +1,4 @@
-"""Numbers of published values that are reproduced, and their wording."""
+"""How many published numbers were reproduced, in words."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.studies.verdict import (
     room_text,
 )
 
-# Each status, worded for one number and for several.
+# wording of each status, for one number and for several
 _WORDS = {
     REPRODUCED: ("reproduced", "reproduced"),
     BY_CONSTRUCTION: ("by construction", "by construction"),
@@ -31,7 +31,7 @@ STUDY_STATUSES = tuple(_WORDS)
 
 
 def count_statuses(table: pd.DataFrame) -> dict[str, int]:
-    """Count the numbers with each status, in the order of the text.
+    """Return how many numbers have each status, in the order of the text.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def count_statuses(table: pd.DataFrame) -> dict[str, int]:
 
 
 def tell_statuses(table: pd.DataFrame) -> str:
-    """Return text on how many numbers have each status, and on the wide tolerances.
+    """Return a text on how many numbers have each status, and on those with wide tolerances.
 
     Parameters
     ----------

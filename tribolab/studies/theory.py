@@ -1,4 +1,4 @@
-"""Theoretical values of the reference system, each computed once."""
+"""Theoretical values of the reference system; each is computed only once."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from tribolab.surface.moments import rms_roughness, rms_slope
 _LOAD = re.compile(r"([\d.]+) N/m")
 _PRESSURE = re.compile(r"([\d.]+) MPa")
 _WORK = re.compile(r"w = ([\d.]+) J/m2")
-_OTHER_PRESSURE = 1e5  # Pa, Sec. 7
+_OTHER_PRESSURE = 1e5  # Pa, pressure of Sec. 7
 
 
 def _stated_number(pattern: re.Pattern[str], row: Published) -> float:
-    """Return the number in the text of a condition."""
+    """Return the number that the text of a condition contains."""
     match = pattern.search(row.condition)
     if match is None:
         raise AnalysisError(
@@ -44,7 +44,7 @@ def _stated_number(pattern: re.Pattern[str], row: Published) -> float:
 
 
 class Theory:
-    """Computed reference system: Hertz, JKR, Persson contact, adhesion, rubber, lubrication.
+    """Theory of the reference system: Hertz, JKR, Persson, adhesion, rubber, lubrication.
 
     Surface and condition of a row of published numbers select the value.
     """
@@ -61,7 +61,7 @@ class Theory:
         self._slow = functools.cache(self._boundary)
 
     def load(self, row: Published) -> float:
-        """Return the load [N/m] of a condition; a published pressure is converted to its load."""
+        """Return the load [N/m] of a condition, also if the paper states a pressure."""
         if match := _LOAD.search(row.condition):
             return float(match[1])
         if match := _PRESSURE.search(row.condition):
@@ -71,20 +71,20 @@ class Theory:
         raise AnalysisError(f"published {row.quantity}: no load in '{row.condition}'")
 
     def has_load(self, row: Published) -> bool:
-        """Whether the condition is one of the loads, or a pressure assigned to one."""
+        """Return whether the condition states a load, or a pressure that belongs to one."""
         try:
             return self.load(row) > 0
         except AnalysisError:
             return False
 
     def pressure(self, row: Published) -> float:
-        """Return the mean Hertz pressure [Pa] of the load; a pressure without load is unchanged."""
+        """Return the mean Hertz pressure [Pa] of the load, or the pressure that is stated."""
         if not self.has_load(row):
             return 1e6 * _stated_number(_PRESSURE, row)
         return float(hertz_mean_pressure(self.load(row), self._contact))
 
     def medium(self, row: Published) -> str:
-        """Return the medium of a condition with adhesion; "" without."""
+        """Return the medium of a condition with adhesion; "" without one."""
         if "no adhesion" in row.condition:
             return ""
         return next((medium for medium in self.media if medium in row.condition), "")
@@ -130,21 +130,21 @@ class Theory:
         return float(areas[np.argmin(np.abs(self._pressures - self.pressure(row)))])
 
     def enhancement(self, surface: str, medium: str) -> list[float]:
-        """Return the contact area relative to that without adhesion, at each load."""
+        """Return the contact area with adhesion over that without, at each load."""
         return self._adhesive(surface, medium)[1][:-1].tolist()
 
     def macroscopic_work(self, surface: str, medium: str) -> float:
-        """Return gamma_eff(1) [J/m2] at vanishing load."""
+        """Return the effective work of adhesion gamma_eff(1) [J/m2] at vanishing load."""
         work = self._published_work(medium)
         macroscopic = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
         return float(macroscopic.macroscopic_work_of_adhesion)
 
     def viscoelastic_friction(self) -> dict[str, float]:
-        """Return the largest mu_visc of each surface; Smooth in full contact."""
+        """Return the maximum viscoelastic friction of each surface; complete contact for Smooth."""
         speeds = np.array(xu2026.SPEEDS)
         largest = {}
         for name in xu2026.surfaces:
-            full = name == "Smooth"  # adhesion nearly completes that contact (Sec. 6)
+            full = name == "Smooth"  # adhesion makes its contact almost complete (Sec. 6)
             friction = viscoelastic_friction(
                 speeds, self._pressures[0], xu2026.psd(name), PDMS_STAND_IN, complete_contact=full
             )
@@ -162,7 +162,7 @@ class Theory:
         return table.rms_roughness / table.decay_length
 
     def flow_stops(self, level: float) -> list[float]:
-        """Return the mean separation over h_rms of each surface where phi_p falls below a level."""
+        """Return the mean separation over h_rms at which phi_p falls below a level, by surface."""
         stops = []
         for name in xu2026.surfaces:
             factors = flow_factors(xu2026.psd(name))
@@ -178,7 +178,7 @@ class Theory:
         return float(np.exp(np.interp(-share, -friction, np.log(speed))))
 
     def _published_work(self, medium: str) -> float:
-        """Return the rounded work of adhesion [J/m2] that the paper uses."""
+        """Return the work of adhesion [J/m2] as the paper rounds and uses it."""
         return next(
             row.si
             for row in xu2026.published
@@ -195,7 +195,7 @@ class Theory:
         return float(line.max_pressure), float(line.contact_width)
 
     def _boundary(self, surface: str, load: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return low speeds [m/s], and friction there relative to the dry contact."""
+        """Return low speeds [m/s], with friction there relative to dry friction."""
         speed = np.append(0.0, np.geomspace(1e-11, 1e-6, 21))
         stress = dict(xu2026.surface(surface).shear_stress)[load * self._contact.length]
         eta = xu2026.system.viscosity

@@ -1,4 +1,4 @@
-"""Verdict on a published number, from the computed one and the paper's other numbers.
+"""Verdict on a published number, from the computed value and from the paper's other numbers.
 
 A printed number is called inconsistent only if a power of ten or a reciprocal turns it into the
 computed one, if other numbers of the paper exclude it, or if the paper's own inputs give a
@@ -24,48 +24,48 @@ DIFFERS = "differs"
 INCONSISTENT = "published value inconsistent"
 MEASURED = "measured, not computed"
 
-NARROW = 0.01  # relative; a larger tolerance is called wide
-_COARSE = 0.05  # half of the last digit, relative: a number printed with one digit is imprecise
+NARROW = 0.01  # relative tolerance above which agreement is called wide
+_COARSE = 0.05  # relative half of the last digit, from which a printed number counts as imprecise
 
 
 class Computed(NamedTuple):
-    """Theoretical value of a published number."""
+    """Computed value for a published number."""
 
-    value: float  # SI
-    tolerance: float  # relative
+    value: float  # in SI
+    tolerance: float  # relative tolerance
     note: str = ""
-    exact: bool = False  # closed form of numbers that the paper prints
-    low: float = math.nan  # range, if one printed number summarises several
+    exact: bool = False  # closed form, which must agree to the printed digits
+    low: float = math.nan  # lower end of a range, if one printed number summarises several
     high: float = math.nan
-    given: str = ""  # reason for agreement by construction
+    given: str = ""  # why agreement follows from how an input was chosen
 
 
 class Measured(NamedTuple):
-    """Reason why a published number cannot be computed."""
+    """Reason why a published number cannot be computed, e.g. because it was measured."""
 
     note: str
 
 
 class Own(NamedTuple):
-    """Value of a published number that follows from others in the paper."""
+    """Value of a published number that follows from the paper's other numbers."""
 
     low: float
     high: float
     words: str
 
 
-BOUNDS = (">", "at most", "below")  # relations that give a bound, not a value
+BOUNDS = (">", "at most", "below")  # words that make a number a bound
 
 
 class Verdict(NamedTuple):
-    """Status of a published number, with the reason."""
+    """Status of a published number, with its reason."""
 
     status: str
     note: str
 
 
 def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = None) -> Verdict:
-    """Return the verdict on a published number, from the computed one and others in the paper.
+    """Return the verdict on a published number, from the computed one and the paper's others.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = 
 
 
 def room_text(tolerance: float) -> str:
-    """Return the relative tolerance as text.
+    """Return a relative tolerance as text.
 
     Examples
     --------
@@ -123,7 +123,7 @@ def room_text(tolerance: float) -> str:
 
 
 def _grade(row: Published, computed: Computed) -> str:
-    """Return the kind of agreement of a number."""
+    """Return how well a number agrees."""
     if computed.given:
         return BY_CONSTRUCTION
     printed = row.last_digit / 2 / abs(row.si) if row.si else 0.0
@@ -132,7 +132,7 @@ def _grade(row: Published, computed: Computed) -> str:
 
 
 def _relative_distance(row: Published, computed: Computed) -> float:
-    """Return relative distance of a computed number, or of a range, from the printed one [1]."""
+    """Return the relative distance [1] of a computed value, or range, from the printed one."""
     if row.relation == ">" or not row.si:
         return 0.0
     low, high = _range(computed)
@@ -142,7 +142,7 @@ def _relative_distance(row: Published, computed: Computed) -> float:
 
 
 def _tolerance(row: Published, computed: Computed) -> float:
-    """Return the tolerance of a number [1]: stated, or half of the last digit."""
+    """Return the relative tolerance of a number [1]: as stated, or half of its last digit."""
     if row.relation.startswith(BOUNDS):
         return computed.tolerance
     return max(computed.tolerance, row.last_digit / 2 / abs(row.si))
@@ -166,7 +166,7 @@ def _agrees(row: Published, computed: Computed) -> bool:
 
 
 def _close(row: Published, value: float, tolerance: float) -> bool:
-    """Whether a value agrees with the printed one, within its tolerance or last digit."""
+    """Return whether a value agrees with the printed one, within its tolerance or last digit."""
     return abs(value - row.si) <= max(tolerance * abs(row.si), row.last_digit / 2)
 
 

@@ -73,12 +73,12 @@ class ReferenceSystem:
         return self.youngs_modulus / (1 - self.poisson_ratio**2)
 
     def half_width(self, normal_force: float) -> float:
-        """Return half-width a [m] of the Hertz line contact, Eq. (16)."""
+        """Return the half-width a [m] of the Hertz line contact, Eq. (16)."""
         load = normal_force / self.length
         return math.sqrt(4 * self.radius * load / (math.pi * self.effective_modulus))
 
     def nominal_pressure(self, normal_force: float) -> float:
-        """Return the mean Hertz pressure F/(2 a L) [Pa]: the paper's sigma_0."""
+        """Return the mean Hertz pressure F/(2 a L) [Pa], the paper's sigma_0."""
         return normal_force / (2 * self.half_width(normal_force) * self.length)
 
 
@@ -144,13 +144,13 @@ system = ReferenceSystem()
 profilometer = Profilometer()
 contact = LineContact(system.radius, system.length, system.youngs_modulus, system.poisson_ratio)
 
-# Numbers exactly as printed in the paper.
+# Numbers as printed in the paper.
 published: tuple[Published, ...] = read_published(Path(__file__).with_name("xu2026_published.csv"))
 
-# 1, 2.15 and 4.64 times each decade: three equal steps on a logarithmic scale.
+# 1, 2.15 and 4.64 in each decade: equal steps on a logarithmic scale.
 SPEEDS = tuple(round(m * 10.0**e, 9) for e in range(-6, -2) for m in (1.0, 2.15, 4.64)) + (1e-2,)
 
-# q0 = pi / d0 with d0 the Hertz width at the lowest load; q1 = pi / 1 nm.
+# q0 = pi / d0, with d0 the Hertz width at the lowest load; q1 = pi / 1 nm.
 _LOW, _HIGH = 423.0, math.pi / 1e-9
 
 
@@ -197,7 +197,7 @@ surfaces: dict[str, StudySurface] = {surface.name: surface for surface in _SURFA
 
 
 def surface(name: str) -> StudySurface:
-    """Return the cylinder called `name`: ``"Smooth"``, ``"Sb-S"`` or ``"Sb-R"``, in any case.
+    """Return the cylinder with a given name: ``"Smooth"``, ``"Sb-S"`` or ``"Sb-R"``, in any case.
 
     Raises
     ------
@@ -216,7 +216,7 @@ def surface(name: str) -> StudySurface:
 
 
 def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
-    """Return the stand-in power spectrum of a surface, from q0 to q1 on a logarithmic grid.
+    """Return the power spectrum that replaces a surface's measured one, from q0 to q1.
 
     Parameters
     ----------
