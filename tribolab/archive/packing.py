@@ -124,7 +124,7 @@ def problems_of(path: str | Path) -> list[str]:
     path = Path(path)
     try:
         with zipfile.ZipFile(path) as archive:
-            size = sum(info.file_size for info in archive.infolist())  # limit of unpacked bytes
+            size = sum(info.file_size for info in archive.infolist())  # bytes after unpacking
             if size > largest_unpacked(path.stat().st_size):
                 raise ReadError(
                     f"{path}: it unpacks to {size / 1e6:.0f} MB, more than "

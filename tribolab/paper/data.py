@@ -78,7 +78,7 @@ class PaperData:
         raise LookupError(f"no simulated curve of {surface}, {medium}, {force:g} N")
 
     def trace(self, surface: str, medium: str, speed: float) -> Trace:
-        """Read the forward stroke at the lowest force with the speed nearest to a speed [m/s]."""
+        """Return the forward stroke at the lowest force whose speed is nearest to `speed` [m/s]."""
         run = next(
             run
             for run in self.runs

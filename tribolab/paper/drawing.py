@@ -298,7 +298,7 @@ def profiles(data: PaperData, name: str) -> FigureAndText:
 
 
 def bars(data: PaperData, name: str) -> FigureAndText:
-    """Draw the uncertainty budget of a surface as bars."""
+    """Draw the friction of a surface in glycerol at all loads, with error bars."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     smallest, largest = (
         end(float(end(c.friction_coefficient_std.values)) for c in measured) for end in (min, max)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.records.parts import CurveOutcome
 
-GroupsAndRows = tuple[dict[str, "xr.Dataset"], list[Row]]  # groups of a file, and rows
+GroupsAndRows = tuple[dict[str, "xr.Dataset"], list[Row]]  # data by group, table rows
 _LOWEST_WAVENUMBER = 423.0  # 1/m, lowest wavenumber of the replacement spectra
 
 

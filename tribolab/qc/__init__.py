@@ -1,4 +1,4 @@
-"""Quality of instrument data: flags, checks on runs and scans, findings."""
+"""Quality control of measured data: flags, checks on runs and scans, findings."""
 
 from __future__ import annotations
 

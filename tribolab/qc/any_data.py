@@ -1,4 +1,4 @@
-"""Checks of whatever was read: runs or scans."""
+"""Checks on data of either kind, runs or scans."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tribolab.qc.scan.sets import check_scan_set
 def check(
     data: xr.Dataset | list[xr.Dataset], segments: xr.Dataset | None = None, **options: Any
 ) -> Findings | list[Findings]:
-    """Run all checks on a run or on scans.
+    """Return the findings of all checks on a run or on scans.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Generate raw_data_schema/CHECKS.md: all checks with their limits."""
+"""Generated page raw_data_schema/CHECKS.md: all checks with their limits."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ other and with the repeatability under all other conditions. This page is genera
 
 
 def catalogue() -> str:
-    """Return the page: each check's question, remedy, and limits with units and reasons.
+    """Return the text of the page: each check's question, remedy, and limits with reasons.
 
     Examples
     --------

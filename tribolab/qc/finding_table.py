@@ -1,4 +1,4 @@
-"""Objections of the checks of several runs or scans in one table."""
+"""Table of all objections of the checks on several runs or scans."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OBJECTING = ("suspect", "fail", "error")
 def objections(
     findings: Findings | Sequence[Findings], **labels: Sequence[str | float]
 ) -> pd.DataFrame:
-    """Return a table of all objections, one row each.
+    """Return a table with one row for each objection.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def objections(
     >>> table.columns.tolist()[:3], set(table.rig) <= {"old", "new"}
     (['rig', 'check', 'status'], True)
     """
-    # late: pandas takes long to load
+    # imported late: pandas loads slowly
     import pandas as pd
 
     every = [findings] if isinstance(findings, Findings) else list(findings)

@@ -1,4 +1,4 @@
-"""Findings of the checks as rows for a table, the terminal, the report or a program."""
+"""Findings of the checks, for a table, the terminal, the report or a program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _FAIL_ON = ("suspect", "fail", "never")
 
 
 class FindingRow(TypedDict):
-    """Result of one check as a row, limits in SI; `value` is None if there is no number.
+    """Result of one check as a row, with limits in SI; `value` is None if there is no number.
 
     `decision` is present if a person settled an objection.
     """
@@ -48,7 +48,7 @@ def _worst_status(statuses: Iterable[str]) -> str:
 
 @dataclass(frozen=True, repr=False)
 class Findings:
-    """Results of all checks on one run or one set of scans.
+    """Results of all checks on one run, or on the scans of one surface.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Findings:
 
     @property
     def marked(self) -> xr.Dataset:
-        """Checked data with quality flags.
+        """Checked data with their quality flags.
 
         Raises
         ------
@@ -85,7 +85,7 @@ class Findings:
 
     @property
     def rows(self) -> list[FindingRow]:
-        """One dictionary for each result, worst first; unknown numbers are None."""
+        """Results as dictionaries, worst first; unknown numbers are None."""
         rows: list[FindingRow] = [
             {
                 "name": self.name,
@@ -101,7 +101,7 @@ class Findings:
                 "limits": {
                     name: limit
                     for name, limit in self.limits.get(check.name, {}).items()
-                    if np.isfinite(limit)  # one that is not set is NaN
+                    if np.isfinite(limit)  # a limit that is not set is NaN
                 },
                 "question": check.question,
                 "cure": (result.cure or check.cure) if result.status in ("suspect", "fail") else "",
@@ -115,8 +115,8 @@ class Findings:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Table with one row per check and variable."""
-        # late: pandas takes long to load
+        """Table with one row for each check and variable."""
+        # imported late: pandas loads slowly
         import pandas as pd
 
         columns = ["check", "status", "variable", "message", "value", "unit", "where", "cure"]
@@ -124,7 +124,7 @@ class Findings:
 
     @property
     def status(self) -> str:
-        """Worst status; "pass" if at least one check passed and none objected.
+        """Worst status of all checks; "pass" if at least one check passed and none objected.
 
         If a person decided on the run it is "accepted" or "rejected"; settled objections do not
         count.
@@ -133,7 +133,7 @@ class Findings:
 
     @property
     def status_as_found(self) -> str:
-        """Worst status, ignoring the decisions of a person."""
+        """Worst status of all checks, before any decisions of the user."""
         return _worst_status(result.status for _, result in self.results)
 
     def count(self) -> Mapping[str, int]:
@@ -143,7 +143,7 @@ class Findings:
 
     @property
     def summary(self) -> str:
-        """One line: the status, and how many checks passed, objected and were skipped."""
+        """Status and numbers of checks that passed, objected and were skipped, in one line."""
         by_check: dict[str, set[str]] = {}
         for check, result in self.results:
             by_check.setdefault(check.name, set()).add(result.status)
@@ -173,8 +173,8 @@ class Findings:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """Return HTML table of objections and notes, with all results folded below."""
-        # imported late for a quick start
+        """Return an HTML table of objections and notes; the other results are collapsed."""
+        # imported late: needed in notebooks only
         import html
 
         objections = self.table["status"].isin(("suspect", "fail", "error"))
@@ -225,7 +225,7 @@ def finding_texts(
 
 
 def exit_code(statuses: set[str], fail_on: str = "fail") -> int:
-    """Return the exit code of a program for these statuses.
+    """Return the exit code of a program, from the statuses of its checks.
 
     Parameters
     ----------

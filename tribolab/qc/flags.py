@@ -1,4 +1,4 @@
-"""Quality flags as CF flag variables: QARTOD severities and the bit mask of checks.
+"""Quality flags as CF flag variables: QARTOD severities, and the bits of the checks.
 
 Every variable ``X`` may carry ``X_qc`` (one severity per sample) and ``X_qc_tests`` (a bit per
 check that objected). The convention is defined here:
@@ -33,8 +33,8 @@ GOOD, NOT_EVALUATED, SUSPECT, FAIL, MISSING = 1, 2, 3, 4, 9
 _VALUES = np.array([GOOD, NOT_EVALUATED, SUSPECT, FAIL, MISSING], dtype=np.int8)
 _MEANINGS = "good not_evaluated suspect fail missing"
 
-# Severity that wins if several checks judged one sample. "Not evaluated" loses to
-# everything else: the other checks did examine the sample.
+# Severity that wins if several checks judge the same sample. "Not evaluated" loses to
+# all others, because at least one check did examine the sample.
 _PRECEDENCE = np.zeros(10, dtype=np.int8)
 _PRECEDENCE[[NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING]] = [0, 1, 2, 3, 4]
 _BY_PRECEDENCE = np.array([NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING], dtype=np.int8)
@@ -77,7 +77,7 @@ def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
 
 
 def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
-    """Return a read-only array of one severity for all samples, with the memory of one.
+    """Return a read-only array of one severity for all samples, which needs the memory of one.
 
     Examples
     --------
@@ -92,13 +92,13 @@ def is_uniform(flags: np.ndarray) -> bool:
     return flags.size > 0 and not any(flags.strides)
 
 
-_Flags = tuple[tuple[Hashable, ...], np.ndarray, dict[str, object]]  # dims, values, attributes
+_Flags = tuple[tuple[Hashable, ...], np.ndarray, dict[str, object]]  # dims, values, attrs
 
 
 def attach(
     data: xr.Dataset, name: str, flags: Mapping[str, np.ndarray], bits: Mapping[str, int]
 ) -> xr.Dataset:
-    """Return a dataset with ``<name>_qc`` and ``<name>_qc_tests`` from the flags of each check.
+    """Return a dataset with ``<name>_qc`` and ``<name>_qc_tests``, from each check's flags.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def attach_all(
     flags: Iterable[tuple[str, Mapping[str, np.ndarray]]],
     bits: Mapping[str, int],
 ) -> xr.Dataset:
-    """Return a dataset with the quality flags of several variables, as by `attach`."""
+    """Return a dataset with quality flags of several variables, as by `attach`."""
     pairs: dict[str, _Flags] = {}
     names = []
     for name, own in flags:
@@ -140,7 +140,7 @@ def attach_all(
 def _pair(
     name: str, variable: xr.Variable, flags: Mapping[str, np.ndarray], bits: Mapping[str, int]
 ) -> tuple[_Flags, _Flags]:
-    """Return the severity of a variable, and the mask of the checks that objected."""
+    """Return the quality flags of a variable, and the bits of the checks that objected."""
     shape, called = variable.shape, variable.attrs.get("long_name", name)
     severity = combine([uniform(shape, NOT_EVALUATED), *flags.values()])
     if anywhere(np.isnan, variable.values):
@@ -162,8 +162,8 @@ def _pair(
 
 
 def _objecting(shape: tuple[int, ...], flags: Mapping[int, np.ndarray]) -> np.ndarray:
-    """Return the bit mask of the checks that objected to each sample."""
-    # suspect, fail and missing have the largest numbers
+    """Return the bits of the checks that objected to each sample."""
+    # the severities suspect, fail and missing have the largest numbers
     flat = {bit: values.reshape(-1) for bit, values in flags.items()}
     flat = {bit: values for bit, values in flat.items() if anywhere(_is_bad, values)}
     if not flat:

@@ -1,4 +1,4 @@
-"""Decisions of a person applied to the findings and the flags of a run.
+"""Decisions of the user, applied to the findings and flags of a run.
 
 A finding is settled if the whole run, or all segments with the samples it objects to, are accepted
 or rejected. It is still listed but no longer counts. The samples of these segments carry the bit
@@ -23,12 +23,12 @@ from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, GOOD, MISSING, SUSPECT
 from tribolab.qc.register import OBJECTIONS, Result
 
-MANUAL, BIT = "manual", 26  # name and bit in ``<variable>_qc_tests``, as for a check
+MANUAL, BIT = "manual", 26  # name, and bit in ``<variable>_qc_tests``, like those of a check
 _ACCEPTED, _REJECTED = "accepted", "rejected"
 
 
 class _Decision(NamedTuple):
-    """Decision on samples: action, author, and intervals of the record."""
+    """User's decision on samples: action, author, and intervals of the record."""
 
     action: str
     author: str
@@ -36,14 +36,14 @@ class _Decision(NamedTuple):
 
 
 class _DecidedSamples(NamedTuple):
-    """Masks of accepted and rejected samples (rejecting wins), and the decisions."""
+    """Masks of accepted and rejected samples (rejection prevails), and the decisions."""
 
     accepted: np.ndarray
     rejected: np.ndarray
     decisions: tuple[_Decision, ...]
 
     def who(self, action: str, bad: np.ndarray) -> str:
-        """Return the names of the authors whose decisions cover these samples."""
+        """Return the authors of the decisions that cover the marked samples."""
         names = [
             heard.author
             for heard in self.decisions
@@ -53,7 +53,7 @@ class _DecidedSamples(NamedTuple):
 
 
 def apply_decisions(findings: Findings, segments: xr.Dataset) -> Findings:
-    """Return findings to which the decisions of a person are applied.
+    """Return the findings with the user's decisions applied.
 
     Parameters
     ----------
@@ -97,10 +97,10 @@ def _samples(
 
 
 def _settle(result: Result, seen: _DecidedSamples) -> Result:
-    """Return a result marked with the person who settled it, if any."""
+    """Return a result with the decision that settles it, if any."""
     if result.status not in OBJECTIONS:
         return result
-    bad = np.ones(seen.accepted.size, dtype=bool)  # a result without flags concerns the whole run
+    bad = np.ones(seen.accepted.size, dtype=bool)  # without flags, a result concerns the whole run
     if result.flags is not None and (result.flags >= SUSPECT).any():
         bad = result.flags >= SUSPECT
     if seen.rejected[bad].all():

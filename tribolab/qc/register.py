@@ -1,4 +1,4 @@
-"""Definition of a check, its result, and its limits."""
+"""Definition of checks, their results and their limits."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from tribolab.core.wording import Count
 from tribolab.qc.flags import FAIL, SUSPECT, is_uniform
 from tribolab.units.conversion import to_si
 
-# From harmless to grave; a summary shows the worst.
+# from harmless to severe; a summary states the worst
 STATUSES = ("pass", "skipped", "suspect", "fail", "error")
 OBJECTIONS = ("suspect", "fail", "error")
 
-Subject = TypeVar("Subject", contravariant=True)  # a run, or scans
+Subject = TypeVar("Subject", contravariant=True)  # what a check examines: a run or scans
 
 
 class Skip(Exception):  # noqa: N818 - not an error: the check does not apply
-    """Raised by a check that does not apply; the text gives the reason."""
+    """Raised by a check that does not apply to the data; the text is the reason."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Result:
 
     @property
     def decision(self) -> str:
-        """Decision of a person on the objection, as text; empty without one."""
+        """User's decision on the objection, as text; "" without one."""
         words = {
             "accepted": ("accepted by {} in spite of"),
             "rejected": "within a part that {} rejected",
@@ -61,7 +61,7 @@ class Result:
 
 @dataclass(frozen=True)
 class Check(Generic[Subject]):
-    """Check: name, bit in the masks, question, remedy and limits.
+    """A check: name, bit in the flags, question, remedy, and limits.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Check(Generic[Subject]):
 def resolve_limits(
     checks: Mapping[str, Check[Subject]], settings: Mapping[str, Mapping[str, str | float]]
 ) -> dict[str, dict[str, float]]:
-    """Return the limits of every check: defaults, replaced by the user's settings.
+    """Return the limits of each check: defaults, replaced by those that the user sets.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def results_of_checks(
     limits: Mapping[str, Mapping[str, float]],
     skip: Mapping[str, str],
 ) -> dict[str, list[Result]]:
-    """Run all checks on a subject; a crash becomes a result with status "error".
+    """Return the results of all checks; a crash becomes a result with status "error".
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def results_of_checks(
             ]
         except Skip as why:
             results[name] = [Result("skipped", "", str(why))]
-        except Exception as crash:  # every crash becomes a row of status "error" (exit code 3)
+        except Exception as crash:  # a crash becomes a result with status "error" (exit code 3)
             text = f"the check itself crashed: {type(crash).__name__}: {crash}"
             results[name] = [Result("error", "", text)]
     return results
@@ -174,7 +174,7 @@ def sample_result(
     fail_share: float = float("inf"),
     value: float = float("nan"),
 ) -> Result:
-    """Make a result from flags of samples: number, place and severity.
+    """Return a result from the flags of samples: their number, place and severity.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def sample_result(
     value
         The number [1] that the check measured, if it is more informative than the share.
     """
-    # a uniform array need not be examined sample by sample
+    # uniform arrays are not searched sample by sample
     sound = is_uniform(flags) and not _objects(flags[:1]).any()
     bad = np.zeros(0, int) if sound else samples_where(_objects, flags)
     if bad.size == 0:

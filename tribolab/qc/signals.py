@@ -1,4 +1,4 @@
-"""Checks on one sampled signal: missing, stuck, clipped, quantised and outlying samples.
+"""Checks on one signal: missing, stuck, clipped, quantised and outlying samples.
 
 Each is a plain function from an array and limits to flags (see :mod:`tribolab.qc.flags`). None
 changes a sample. All are passes of whole-array operations, over long records piece by piece.
@@ -17,15 +17,15 @@ from tribolab.arrays.scratch import filled
 from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 
-_BLOCK = 64  # samples with one noise level; steps of a run may be as short
-_NOISE_RATIO = 1.6  # ratio of noise levels that chance does not produce in so few samples
+_BLOCK = 64  # samples of a block with one noise level; steps of a run can be as short
+_NOISE_RATIO = 1.6  # ratio of noise levels of neighbouring blocks that is not due to chance
 
-_SAMPLES_PER_READING = 3  # samples per reading of a slowly refreshed channel
-_MAX_EXAMINED = 1 << 24  # samples; channels are not recorded much faster than they are refreshed
+_SAMPLES_PER_READING = 3  # samples per reading from which a channel counts as refreshed slowly
+_MAX_EXAMINED = 1 << 24  # samples; longer records are not examined for slow refreshing
 
 
 def missing(values: np.ndarray) -> np.ndarray:
-    """Flag NaN as missing, all other values as good.
+    """Return flags: missing for NaN, good for all other values.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def missing(values: np.ndarray) -> np.ndarray:
 
 
 def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
-    """Flag single samples that deviate from the values expected from both sides.
+    """Return flags on single samples that deviate from the values expected from both sides.
 
     Parameters
     ----------
@@ -77,9 +77,9 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 
 
 def _height(step: np.ndarray) -> np.ndarray:
-    """Return the height of each sample, except two at both ends, from the steps between samples."""
+    """Return how far each sample, except two at both ends, deviates from its neighbours."""
     bend = np.diff(step)
-    # left of sample i: x[i] - x[i-1] and x[i] - (2 x[i-1] - x[i-2]); right likewise
+    # deviations from the previous sample, and from the line through the previous two; then right
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
     upward = np.minimum(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]))
     downward = np.maximum(np.maximum(sides[0], sides[1]), np.maximum(sides[2], sides[3]))
@@ -87,7 +87,7 @@ def _height(step: np.ndarray) -> np.ndarray:
 
 
 def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, int]:
-    """Return the noise level of blocks, at least that of the quietest quarter, and block length.
+    """Return the noise level of each block, not below the quietest quarter, and the block length.
 
     A block next to a much noisier one has the level of the latter, because it may contain the start
     of a noisier step. The remainder at the end belongs to the last block.
@@ -110,7 +110,7 @@ def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, 
 
 
 class _EqualRuns(NamedTuple):
-    """Runs of identical values: lengths, increasing; counts; first and end of the long runs."""
+    """Sequences of identical values: lengths and their counts, first and end of the long ones."""
 
     lengths: np.ndarray
     counts: np.ndarray
@@ -118,10 +118,10 @@ class _EqualRuns(NamedTuple):
 
 
 def _runs_of_equal(values: np.ndarray, long: int) -> _EqualRuns:
-    """Count the runs of identical values, and list those of `long` samples or more."""
+    """Return the counts of sequences of identical values by length, and the long sequences."""
     often: Counter[int] = Counter()
     listed = [np.zeros((0, 2), int)]
-    begun = 0  # first sample of the run that continues in the next piece
+    begun = 0  # start of the sequence that continues in the next piece
     for first, last in pieces(1, values.size):
         change = np.flatnonzero(values[first:last] != values[first - 1 : last - 1]) + first
         if last == values.size:
@@ -141,7 +141,7 @@ def _runs_of_equal(values: np.ndarray, long: int) -> _EqualRuns:
 
 
 def _quantile(values: np.ndarray, counts: np.ndarray, share: float) -> float:
-    """Return a quantile of increasing values with counts, as `numpy.quantile` of all of them."""
+    """Return a quantile of increasing values that occur several times, as `numpy.quantile` does."""
     behind = np.cumsum(counts)
     place = share * (int(behind[-1]) - 1)
     below, above = (
@@ -152,7 +152,7 @@ def _quantile(values: np.ndarray, counts: np.ndarray, share: float) -> float:
 
 
 def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.ndarray:
-    """Flag intervals that repeat one value longer than chance allows.
+    """Return flags on intervals that repeat one value for longer than chance allows.
 
     Parameters
     ----------
@@ -180,9 +180,9 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     longest, runs = int(equal.lengths[-1]), int(equal.counts.sum())
     others = max(values.size - longest, 1)
     if runs == 1:
-        return uniform(values.size, SUSPECT)  # constant from start to end
-    # a signal quantised more coarsely than its noise repeats values normally; most runs define
-    # the usual length
+        return uniform(values.size, SUSPECT)  # the whole signal is constant
+    # a signal quantised more coarsely than its noise often repeats values: the length that 99 %
+    # of the sequences do not exceed is usual
     usual = _quantile(equal.lengths, equal.counts, 0.99)
     repeat = max((others - (runs - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
@@ -190,13 +190,13 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     if not bad.size:
         return uniform(values.size, GOOD)
     flags = filled(values.size, GOOD, np.int8)
-    for start, stop in bad:  # loop over the few stuck intervals
+    for start, stop in bad:
         flags[start:stop] = SUSPECT
     return flags
 
 
 def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.ndarray:
-    """Flag samples at the end of the range where the signal is clipped.
+    """Return flags on samples that are clipped at an end of the range.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
         suspect at saturated samples, good elsewhere.
     """
     readings = _readings(values)
-    if readings is not None:  # refreshed more slowly than recorded: each reading counts once
+    if readings is not None:  # count each reading once if the channel is refreshed slowly
         levels, number = readings
         return saturation(levels, excess, fewest)[number]
     known = sum(np.count_nonzero(values[a:b] == values[a:b]) for a, b in pieces(0, values.size))
@@ -238,7 +238,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
 
 
 def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return readings of a slowly refreshed signal and of each sample; None if few repeat."""
+    """Return the readings of a slowly refreshed signal, and the reading of each sample, or None."""
     if values.size < 2 or values.size > _MAX_EXAMINED:
         return None
     changes = np.concatenate([[True], values[1:] != values[:-1]])
@@ -249,7 +249,7 @@ def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
 
 
 def _end_counts(values: np.ndarray, end: float, sign: float, step: float) -> tuple[int, int, bool]:
-    """Return the number of samples at an end of the range, within a step of it, and in a row."""
+    """Return the numbers of samples at an end of the range and near it, and whether they touch."""
     count, below, in_a_row, before = 0, 0, False, False
     for start, stop in pieces(0, values.size):
         depth = sign * (end - values[start:stop])

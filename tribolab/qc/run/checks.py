@@ -1,4 +1,4 @@
-"""All checks on a run, with a table of findings and flags on the samples."""
+"""All checks on a run, with a table of findings and flags on its samples."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ RUN_CHECKS: dict[str, Check[RunSubject]] = {
 }
 
 _SEGMENTS = "segments"
-# checks that apply to results as well as to samples
+# checks that also apply to rows that are results instead of samples
 _OF_POINTS = {"schema", "rows_left_out", "said_elsewhere", "zero_reference", "friction_sign"}
 _OF_POINTS |= {"normal_force_error", "segments", "missing"}
 _NO_SAMPLES = "its rows are results, not samples"
@@ -48,7 +48,7 @@ def check_run(
     contact_width: str | float | None = None,
     checks: Mapping[str, Check[RunSubject]] = RUN_CHECKS,
 ) -> Findings:
-    """Run all checks on a run: faults, their place, their effect, and what to do.
+    """Return the findings of all checks on a run: errors, their place, effect and remedy.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def check_run(
     answers = _flag_unexamined(results_of_checks(checks, subject, resolved, left))
     results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()} | {MANUAL: BIT}
-    # an error of the time affects every signal; a correct time does not validate a signal's values
+    # errors of the time affect all signals; a correct time does not make a signal correct
     of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
 
     def flags() -> Iterator[tuple[str, dict[str, np.ndarray]]]:
@@ -131,7 +131,7 @@ def check_run(
 def _drop_rejected(
     segments: xr.Dataset | None, friction: xr.Dataset | None, slip: xr.Dataset | None
 ) -> list[xr.Dataset | None]:
-    """Return results without rejected segments, unless the whole run is rejected."""
+    """Return results without the rejected segments, unless all segments are rejected."""
     parts = [segments, friction, slip]
     if segments is None or rejected(segments).all():
         return parts
@@ -145,7 +145,7 @@ def _flags_on(
 
 
 def _objections(flags: np.ndarray) -> np.ndarray:
-    """Return the flags of objections only; good samples become not evaluated."""
+    """Return flags in which good samples are replaced by "not evaluated"."""
     good = flags == GOOD
     if good.all():
         return uniform(flags.shape, NOT_EVALUATED)
@@ -153,7 +153,7 @@ def _objections(flags: np.ndarray) -> np.ndarray:
 
 
 def _flag_unexamined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
-    """Return results with an objection if every check except that of segments was skipped."""
+    """Return results with an objection if no check, except that of segments, examined anything."""
     others = [result for name, rows in results.items() if name != _SEGMENTS for result in rows]
     own = results.get(_SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):

@@ -1,4 +1,4 @@
-"""Check that friction opposes the motion."""
+"""Check whether friction opposes the motion."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from tribolab.qc.run.subject import RunSubject
 
 
 def _reversed_slip(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Report stick-slip that loads fast and slips slowly: the sensor's sign is reversed."""
+    """Report stick-slip that rises fast and falls slowly: the sign of the sensor is reversed."""
     kind = subject.slip["waveform"].values
-    # friction along a track may fall slowly too, but not periodically
+    # friction may also fall slowly along a track, but not periodically
     reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == SLIP_KINDS[0])
     reversed_ &= ~_follows_load(subject, limits["of_load"])
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
@@ -34,7 +34,7 @@ def _reversed_slip(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
 
 
 def _follows_load(subject: RunSubject, least: float) -> np.ndarray:
-    """Return a mask of segments in which the load causes the variation of friction."""
+    """Return a mask of the segments in which friction varies because the load varies."""
     name = subject.required_friction_signal
     if "normal_force" not in subject.signals or name != "friction_force":
         return np.zeros(len(subject.slices), bool)
@@ -48,7 +48,7 @@ def _follows_load(subject: RunSubject, least: float) -> np.ndarray:
 def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     try:
         sense = _reversed_slip(subject, limits)
-    except Skip:  # no friction in the run: the other part of the check reports it
+    except Skip:  # the other part of the check reports that there is no friction
         sense = []
     try:
         return [*_opposes(subject, limits), *sense]
@@ -69,7 +69,7 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if not np.isfinite(values).any():
         raise Skip("no segment has a friction coefficient")
     least = limits["share"] * float(np.nanmean(np.abs(values)))
-    # a signal that changes by more than its mean within a segment has no clear sign
+    # if a signal changes by more than its mean within a segment, its sign is unclear
     spans = subject.segments["trimmed_stop"].values - subject.segments["trimmed_start"].values
     slope = friction["trend" if name == "friction_coefficient" else "force_trend"].values
     moved = np.nan_to_num(np.abs(slope * spans))
@@ -90,7 +90,7 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> str:
-    """Return the remedy for a wrong sign; suggests changing it only if nothing else can be wrong.
+    """Return the remedy for a wrong sign, which is to reverse it only if nothing else can be wrong.
 
     This needs all clear strokes to be reversed, in both directions, and a loop centred on zero:
     an offset larger than friction reverses strokes as well.
@@ -129,7 +129,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
 
 
 def _unsigned_speed(subject: RunSubject) -> bool:
-    """Return whether the velocity is never negative, as from a tachometer without direction."""
+    """Return whether the velocity is never negative, as measured by a tachometer."""
     velocity = subject.signals.get("sliding_velocity")
     return velocity is not None and not (velocity < 0).any()
 

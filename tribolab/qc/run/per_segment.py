@@ -1,4 +1,4 @@
-"""Results from one number per segment, graded by limits, with flags on the samples."""
+"""Results of checks that compare one number per segment with limits."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.qc.run.subject import RunSubject
 
 
 def grade(values: np.ndarray, suspect: float, fail: float) -> np.ndarray:
-    """Flag values by two limits on their magnitude.
+    """Return the flags of values whose magnitudes are compared with two limits.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def segment_results(
     limits: Mapping[str, float],
     what: str,
 ) -> list[Result]:
-    """Return results from one number per segment, with flags on the samples."""
+    """Return the results for one number per segment, with flags on the samples."""
     flags = grade(values, limits["suspect"], limits.get("fail", np.inf))
     if (flags == NOT_EVALUATED).all():
         raise Skip(f"{what}: no reference value")
@@ -51,7 +51,7 @@ def segment_results(
 
 
 def status_of(value: float, limits: Mapping[str, float]) -> str:
-    """Return the status of a number by its limits ``suspect`` and ``fail``.
+    """Return the status of a number, by its limits ``suspect`` and ``fail``.
 
     Examples
     --------

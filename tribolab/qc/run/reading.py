@@ -1,4 +1,4 @@
-"""Checks on the reading of a file: lost rows, and information that it lacks."""
+"""Checks on how a file was read: lost rows, and missing information."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _assumed_values(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
         text += str(attrs["assumed"]).replace("_", " ")
         results.append(Result("pass", "settings", text, noted=True))
     results += _stated_strokes(subject, limits)
-    with contextlib.suppress(Skip):  # the run has no friction
+    with contextlib.suppress(Skip):  # without friction there is nothing to compare
         results += _recorded_coefficient(subject, limits) + _impossible_coefficient(subject)
     if results:
         return results
@@ -80,7 +80,7 @@ def _assumed_values(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
 
 
 def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Compare the strokes stated in a file with those of its position signal."""
+    """Report a number of strokes in the file that the position signal contradicts."""
     attrs = subject.run.attrs
     stated_values = [float(attrs.get(name, np.nan)) for name in _STATED]
     if not np.isfinite(stated_values).any() or "position" not in subject.run:
@@ -93,7 +93,7 @@ def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     if not lasted.size:
         return []
     length, lasts = float(median(strokes.length[strokes.usual])), float(median(lasted))
-    # a speed that is set is the mean one of a stroke, or the peak of a sine
+    # the stated speed may be the mean of a stroke, or the peak of a sine
     speed = float(np.clip(stated_values[-1], length / lasts, 0.5 * np.pi * length / lasts))
     found = (length, 0.5 / lasts, 0.5 * int(strokes.usual.sum()), speed)
     words = ("{0:.4g} mm strokes", "{0:.4g} Hz", "{0:.0f} cycles", "{0:.3g} mm/s")
@@ -121,7 +121,7 @@ _STROKES = (
 
 
 def _impossible_coefficient(subject: RunSubject) -> list[Result]:
-    """Report a friction coefficient of an impossible size."""
+    """Report a friction coefficient that is impossibly large or small."""
     if not subject.sliding or "friction_coefficient" not in subject.friction:
         return []
     values = np.abs(subject.friction["friction_coefficient"].values)
@@ -136,14 +136,14 @@ def _impossible_coefficient(subject: RunSubject) -> list[Result]:
 
 
 def _recorded_coefficient(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Compare the recorded coefficient with the ratio of the forces, in the segments."""
+    """Report a recorded coefficient that differs from the ratio of the forces in the segments."""
     run = subject.run
     if not ({"friction_coefficient", "friction_force"} <= set(run.variables) and subject.sliding):
         return []
     if "normal_force" not in run or "friction_coefficient" not in subject.friction:
         return []
     recorded = np.abs(subject.segment_means("friction_coefficient"))
-    # differences due to zeros removed here or by the instrument do not count
+    # differences due to a zero that was removed are allowed
     raw = np.abs(subject.segment_means("friction_force"))
     raw = raw / np.abs(subject.segment_means("normal_force"))
     found = np.abs(subject.friction["friction_coefficient"].values)

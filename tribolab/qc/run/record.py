@@ -1,4 +1,4 @@
-"""Checks on the time axis and on each signal, sample by sample."""
+"""Checks on the time and on each signal, sample by sample."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tribolab.qc.run import schema, timing
 from tribolab.qc.run.subject import RunSubject
 from tribolab.reading.dialect.formula import names_in, parse_formula
 
-_DEAD_CHANNEL = 0.10  # reason: losing a tenth of a signal removes whole segments
+_DEAD_CHANNEL = 0.10  # share of missing samples; a tenth of a signal can be whole segments
 
 
 def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -57,7 +57,7 @@ def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     lost = timing.lost_time(time, flags)
     longest = float(timing.lengths_of_gaps(time, flags).max())
     text = f"{{count:gap|gaps}} in time, the longest {longest:.4g} s, {{where}}"
-    # the parts between long pauses are complete, and no segment extends across a pause
+    # no segment extends across a long pause, and the parts between pauses are complete
     parts = np.diff(np.concatenate([[0], np.flatnonzero(flags == SUSPECT), [flags.size]]))
     if lost > limits["lost"] and np.median(parts) < limits["whole"]:
         flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)
@@ -91,11 +91,11 @@ def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     return [Result("pass", "time", text, float(places.size), where=where, flags=flags, noted=seen)]
 
 
-_COUNTER = 0.1  # share of the samples; a number that changes more often counts turns, not steps
+_COUNTER = 0.1  # share of the samples above which a changing number counts turns, not steps
 
 
 def _step_changes(subject: RunSubject) -> np.ndarray:
-    """Return the indices of samples at which a new step or cycle of the instrument begins."""
+    """Return the indices of samples at which a step or cycle of the instrument begins."""
     changed = np.zeros(subject.time.size, dtype=bool)
     for name in ("step", "cycle"):
         if name in subject.run:
@@ -144,7 +144,7 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = "{count:sample is|samples are} constant for longer than noise allows, {where}"
-    # computed by formulas, from a load in the file header
+    # forces that are computed from a load stated in the file
     stated = subject.about.derived
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
@@ -166,14 +166,14 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _drop_rests(subject: RunSubject, values: np.ndarray, flags: np.ndarray) -> np.ndarray:
-    """Remove flags of zeros next to the sliding, where an unloaded sensor reads zero."""
+    """Return flags without those at zeros outside segments, where an unloaded sensor reads 0."""
     if not (subject.sliding and (flags == SUSPECT).any()):
         return flags
     return np.where((values == 0) & ~subject.segment_mask, np.int8(GOOD), flags)
 
 
 def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
-    """Return whether a constant load is a set-point: nonzero, constant, while friction varies."""
+    """Return whether the load is a set-point: constant and not 0, while friction varies."""
     if not (np.nanmin(load) == np.nanmax(load) != 0):
         return False
     others = [values for name, values in subject.force_signals.items() if name != "normal_force"]
@@ -181,7 +181,7 @@ def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
 
 
 def _is_stated(subject: RunSubject, name: str) -> bool:
-    """Return whether a force is computed only from stated values, which change with the step."""
+    """Return whether a force is computed from stated values only, which may change by step."""
     formula = subject.about.derived.get(name)
     if formula is None or formula == "stated":
         return formula is not None
@@ -248,7 +248,7 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _step_borders(subject: RunSubject) -> np.ndarray:
-    """Return the samples on both sides of each start of a new step or continued record."""
+    """Return the samples on both sides of each start of a step or of a continued record."""
     starts = np.flatnonzero(timing.time_gaps(subject.time) == SUSPECT)
     steps = subject.run.get("step")
     if steps is not None:
@@ -257,7 +257,7 @@ def _step_borders(subject: RunSubject) -> np.ndarray:
 
 
 def _mean_shift(values: np.ndarray, flags: np.ndarray) -> float:
-    """Return the share by which outlying samples change the mean magnitude of a signal."""
+    """Return the relative change of a signal's mean magnitude by its outliers."""
     places = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
     before, after = np.maximum(places - 1, 0), np.minimum(places + 1, values.size - 1)
     usual = 0.5 * (values[before] + values[after])
@@ -275,7 +275,7 @@ _SLIPS = (
     "The contact sticks and slips. A slip shorter than a sample looks like this; record faster to "
     "resolve it. Outliers at rest are a disturbance. The mean hardly changes."
 )
-_STRONG = 0.03  # oscillations with a larger standard deviation over friction are stick-slip
+_STRONG = 0.03  # standard deviation over friction above which an oscillation is stick-slip
 
 
 def _sticks_and_slips(subject: RunSubject) -> bool:

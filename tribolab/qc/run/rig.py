@@ -1,4 +1,4 @@
-"""Checks on the rig: zero points, load, speed, and match of two clocks."""
+"""Checks on the rig: zeros, load, speed, and the match of two clocks."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _normal_force_error(subject: RunSubject, limits: Mapping[str, float]) -> lis
 def _load_moves(
     subject: RunSubject, loads: np.ndarray, limits: Mapping[str, float]
 ) -> list[Result]:
-    """Report a load that was set constant but changes along the run or a segment."""
+    """Report a load that should be constant, but changes along the run or within a segment."""
     if "set_normal_force" in subject.run:
         return []
     parts = [part for part in subject.slices if part.stop > part.start]
@@ -69,7 +69,7 @@ def _load_moves(
     if not known.size:
         return []
     if known.max() > limits["programme"] * known.min():
-        return _steps_without_friction(subject, loads, limits)  # several loads were set
+        return _steps_without_friction(subject, loads, limits)  # the set-point has steps
     signal = subject.signals["normal_force"]
     first, last = parts[0], parts[-1]
     tenth = max((last.stop - last.start) // 10, 1), max((first.stop - first.start) // 10, 1)
@@ -94,10 +94,10 @@ def _load_moves(
 def _steps_without_friction(
     subject: RunSubject, loads: np.ndarray, limits: Mapping[str, float]
 ) -> list[Result]:
-    """Report load steps that the friction force at equal speed does not follow."""
+    """Report steps of the load that the friction force at the same speed does not follow."""
     if "friction_force" not in subject.friction or np.isfinite(subject.target_normal_force).any():
         return []
-    # the half loop of a pair whose load steps divides its friction by the load
+    # not the half loop: if the load changes within a pair, it is already scaled by the load
     zero = float(median_of_known(subject.friction["friction_force_offset"].values))
     force = np.abs(subject.segment_means("friction_force") - zero)
     speed = np.nan_to_num(subject.friction["sliding_speed"].values)
@@ -127,7 +127,7 @@ _READING_STEPS = (
     "Check that the load cell and its amplifier kept their range, or state the load of each step "
     "(set_normal_force)."
 )
-_CLEAR = 5.0  # standard errors of a change of the load
+_CLEAR = 5.0  # change of the load in standard errors that counts as clear
 
 
 def _normal_force_scatter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -172,10 +172,10 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     ).T
     if not np.isfinite(slopes).any() and not results:
         raise Skip("no position within the segments")
-    # the slope is a mean over the segment; compare it with the mean signed velocity
+    # compare means: the slope is a mean over the segment, and so is the signed velocity
     velocity = subject.segment_means("sliding_velocity")
     velocity = np.where(velocity == 0, np.nan, velocity)
-    # a creep below the resolution of the encoder cannot be compared
+    # motion below the resolution of the encoder cannot be compared
     resolved = limits["errors"] * error < limits["suspect"] * np.abs(velocity)
     off = np.where(resolved, slopes / velocity - 1, np.nan)
     if results and not np.isfinite(off).any():
@@ -187,7 +187,7 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
 
 
 def _slope(subject: RunSubject, part: slice, noise: float) -> tuple[float, float]:
-    """Return the slope of the position in a segment and its error [m/s] for a reading error [m].
+    """Return the velocity [m/s] from the position in a segment, and its error by reading errors.
 
     Deviations from a line are not noise, because a stage that stops deviates too. In a segment
     without a change of digit the reading error is constant.

@@ -1,4 +1,4 @@
-"""Required signals of a run, their units, and the physically possible ranges."""
+"""Required signals of a run, their units, and their possible ranges."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SPEED = ("sliding_velocity", "position", "step", "set_speed", "shear_rate")
 
 
 class Range(NamedTuple):
-    """Plausible and possible range of a signal in SI, with the reason."""
+    """Plausible and possible range of a signal in SI, with the reason for its limits."""
 
     low: float
     high: float
@@ -42,7 +42,7 @@ def ranges() -> Mapping[str, Range]:
     """
     limits = {}
     for field in load_schema("run")["fields"]:
-        if "reason" not in field:  # time and step numbers have their own checks
+        if "reason" not in field:  # time and step numbers have checks of their own
             continue
         believed, possible = field["constraints"], field.get("possible", {})
         limits[field["name"]] = Range(
@@ -56,7 +56,7 @@ def ranges() -> Mapping[str, Range]:
 
 
 def flag_range(values: np.ndarray, limits: Range) -> np.ndarray:
-    """Flag implausible values as suspect and impossible ones as fail.
+    """Return flags: implausible values are suspect, impossible ones fail.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def flag_range(values: np.ndarray, limits: Range) -> np.ndarray:
 
 
 def wrong_units(run: xr.Dataset) -> dict[str, str]:
-    """Return the variables whose unit differs from that of the dictionary, with the unit."""
+    """Return the variables whose unit is not that of their quantity, with the unit."""
     wrong = {}
     for name, variable in run.variables.items():
         known = QUANTITIES.get(str(name))
@@ -84,7 +84,7 @@ def wrong_units(run: xr.Dataset) -> dict[str, str]:
 
 
 def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
-    """Return signals that a friction run needs but this one lacks, each with a remedy."""
+    """Return the signals that a friction run needs but this one lacks, each with a remedy."""
     missing = []
     if not any(name in run for name in _FRICTION):
         missing.append(
@@ -105,7 +105,7 @@ def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def tensile_share(normal_force: np.ndarray) -> float:
-    """Return the share of the loaded samples in which the normal force is tensile.
+    """Return the share of the loaded samples with a tensile normal force.
 
     Samples are loaded if the magnitude exceeds a tenth of the 99th percentile. Adhesion can be
     tensile for a moment, but no run slides under tension.

@@ -1,4 +1,4 @@
-"""Checks on sliding: disturbances, steadiness, and uncertainty of the coefficient."""
+"""Checks on sliding: disturbances, steadiness, and uncertainty of the friction coefficient."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _resonance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     speed = np.array([line.speed for line in lines])
     fixed = []
     for line in lines:
-        # the frequency of stick-slip changes with speed; that of a resonance does not
+        # the frequency of stick-slip depends on speed, that of a resonance does not
         alike = speed[np.abs(np.log(frequency / line.frequency)) < limits["width"]]
         if alike.max() >= limits["speeds"] * alike.min():
             fixed.append(line)
@@ -80,12 +80,12 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     if np.isnan(graded).all():
         return [doubt]
     rest = segment_results(subject, signal, graded, limits, title)
-    # one unsteady segment makes the run unsteady
+    # one unsteady segment makes the whole run unsteady
     return [doubt, *(result for result in rest if result.status != "pass")]
 
 
 def _add_largest_change(results: list[Result], change: np.ndarray) -> list[Result]:
-    """Add the largest measured change if no trend is significant."""
+    """Return results that state the largest measured change if no trend is significant."""
     if results[0].status != "pass" or results[0].value != 0.0:
         return results
     text = (
@@ -95,7 +95,7 @@ def _add_largest_change(results: list[Result], change: np.ndarray) -> list[Resul
 
 
 def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    _ = subject.required_friction_signal  # without a segment, the check `schema` objects
+    _ = subject.required_friction_signal  # without a friction signal, the check `schema` objects
     why = subject.missing_segment_reason
     if why and subject.is_ramp:
         text = "speed-ramp test: the curve includes the zero offset of the friction force"
@@ -113,7 +113,7 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Report coefficients with a large U95 that noise does not explain."""
+    """Report friction coefficients with a large U95 that is not due to noise."""
     friction, name = subject.friction, "friction_coefficient"
     if f"{name}_beyond_U95" not in friction:
         return []
@@ -122,7 +122,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     pairs = pairs_of(friction)
     moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
     means = []
-    for own in _load_groups(friction):  # differences between loads are not errors
+    for own in _load_groups(friction):  # separate loads: their friction differs truly
         common = None if shared is None else shared[own]
         found = run_means(moving[own], mu[own], sem[own], wide[own], pairs[own], shared=common)
         means += [mean._replace(strokes=own[mean.strokes]) for mean in found]
@@ -149,7 +149,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
 
 
 def _load_groups(friction: xr.Dataset) -> list[np.ndarray]:
-    """Return the segments under each load, in the order of the loads."""
+    """Return the segments at each load, in the order of the loads."""
     every = np.arange(friction.sizes["segment"])
     if "normal_force" not in friction:
         return [every]

@@ -1,4 +1,4 @@
-"""Checks of strokes: number, speed, sliding distance and sampling."""
+"""Checks on strokes: number, speed, sliding distance and sampling."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _STRENGTH = Limit(
 
 
 def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Report strokes without a segment although their position changes."""
+    """Report strokes in which the position changes but no segment was found."""
     segments = subject.segments
     about = subject.segment_about
     if about.velocity_source != "position" or about.stroke_middle > 0:
@@ -64,7 +64,7 @@ def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[
 
 
 def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    # only segments of friction: shear steps of a rheometer have a shear rate, not a speed
+    # steps of a rheometer have a shear rate instead of a speed
     unknown = np.isnan(subject.friction["sliding_speed"].values)
     if unlike := subject.about.strokes_unlike_s:
         often = subject.run.attrs["stroke_frequency_Hz"]
@@ -86,7 +86,7 @@ def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
 
 
 def _reciprocating(subject: RunSubject) -> list[Result]:
-    """Report segments of unknown direction in which the force reverses repeatedly."""
+    """Report segments of unknown direction in which the friction force reverses repeatedly."""
     turned = subject.reversals
     if not turned.any():
         return []
@@ -130,10 +130,10 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _unequal_periods(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Report oscillating segments in which drops and spectrum give different periods."""
+    """Report oscillating segments in which drops and spectrum disagree on the period."""
     slip = subject.slip
     odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
-    # in any of the segments
+    # the chance of a false alarm is for all segments together
     odd &= slip["false_alarm_probability"].values < BAND_BY_CHANCE.value / odd.size
     if odd.any():
         odd &= subject.friction["steady"].values == steadiness.IS_STEADY

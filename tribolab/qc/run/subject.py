@@ -1,4 +1,4 @@
-"""Data examined by the checks on a run: signals, segments, and contact."""
+"""Data that the checks on a run examine: signals, segments and contact."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _SIGNALS = (*_FORCES, "sliding_velocity", "position", "normal_stress", "temperat
 
 
 class RunSubject:
-    """Run under examination, with quantities that several checks need, computed once.
+    """Run that is checked, with quantities that several checks need and that are computed once.
 
     Parameters
     ----------
@@ -79,25 +79,25 @@ class RunSubject:
             return self._segments
         try:
             return find_segments(self.run)
-        except AnalysisError as why:  # e.g. the speed is unknown: the check `schema` reports it
+        except AnalysisError as why:  # e.g. the speed is unknown, which the check `schema` reports
             return Skip(f"no segments: {why}")
 
     @property
     def missing_segment_reason(self) -> str:
-        """Reason why there is no segment, as a sentence; empty if there is one."""
+        """Why there is no segment, as a sentence; "" if there is one."""
         if isinstance(self._segments_or_skip, Skip):
-            raise self._segments_or_skip  # the speed is unknown: the check `schema` objects
+            raise self._segments_or_skip  # the speed is unknown, which the check `schema` reports
         return why_no_segment(self._segments_or_skip)
 
     @property
     def is_ramp(self) -> bool:
-        """Whether the speed rises or falls all the time."""
+        """Whether the speed increases or decreases throughout the run."""
         found = self._segments_or_skip
         return not isinstance(found, Skip) and consists_of_ramps(found)
 
     @property
     def segments(self) -> xr.Dataset:
-        """Segments of constant speed; without any, the check is skipped."""
+        """Segments of constant speed; the check is skipped if there are none."""
         if isinstance(self._segments_or_skip, Skip):
             raise self._segments_or_skip
         if self._segments_or_skip.sizes["segment"] == 0:
@@ -111,12 +111,12 @@ class RunSubject:
 
     @property
     def segment_about(self) -> SegmentAttributes:
-        """Attributes of the segments; raises `Skip` without any."""
+        """Attributes of the segments; the check is skipped if there are none."""
         return SegmentAttributes.from_attrs(self.segments.attrs)
 
     @property
     def is_points(self) -> bool:
-        """Whether the rows are results of the instrument instead of samples."""
+        """Whether the rows are results of the instrument and not samples."""
         found = self._segments_or_skip
         return not isinstance(found, Skip) and (
             SegmentAttributes.from_attrs(found.attrs).rows_are == "points"
@@ -133,34 +133,34 @@ class RunSubject:
 
     @property
     def friction(self) -> xr.Dataset:
-        """Friction of each segment; without any, the check is skipped."""
+        """Friction of each segment; the check is skipped if there is none."""
         if isinstance(self._friction_or_skip, Skip):
             raise self._friction_or_skip
         return self._friction_or_skip
 
     @property
     def sliding(self) -> bool:
-        """Whether there is any segment."""
+        """Whether the run has any segment."""
         segments = self._segments_or_skip
         return not isinstance(segments, Skip) and segments.sizes["segment"] > 0
 
     @cached_property
     def slices(self) -> list[slice]:
-        """Samples of each trimmed segment."""
+        """Slice of the samples in each trimmed segment."""
         first = np.searchsorted(self.time, self.segments["trimmed_start"].values, "left")
         last = np.searchsorted(self.time, self.segments["trimmed_stop"].values, "right")
         return [slice(int(a), int(b)) for a, b in zip(first, last, strict=True)]
 
     @cached_property
     def segment_mask(self) -> np.ndarray:
-        """Mask of the samples within trimmed segments."""
+        """Mask of the samples in trimmed segments."""
         inside = np.zeros(self.time.size, dtype=bool)
         for part in self.slices if self.sliding else []:
             inside[part] = True
         return inside
 
     def typical_size(self, name: str) -> float:
-        """Return the median magnitude of a signal within the segments, or else of all samples."""
+        """Return the median magnitude of a signal in the segments; without any, of all samples."""
         values = self.signals[name]
         inside = self.segment_mask if self.segment_mask.any() else np.ones(values.size, dtype=bool)
 
@@ -170,7 +170,7 @@ class RunSubject:
         return float(median_in_pieces(sizes, values.size))
 
     def sample_flags(self, flags: np.ndarray) -> np.ndarray:
-        """Return the flag of each segment on its samples (time)."""
+        """Return flags on the samples (time), from one flag per segment."""
         samples = filled(self.time.size, NOT_EVALUATED, np.int8)
         for part, flag in one_by_one(zip(self.slices, flags, strict=True)):
             samples[part] = flag
@@ -183,13 +183,13 @@ class RunSubject:
 
     @cached_property
     def friction_signal(self) -> str | None:
-        """Name of the friction signal, or None."""
+        """Name of the friction signal; None if there is none."""
         names = ("friction_force", "friction_coefficient")
         return next((name for name in names if name in self.signals), None)
 
     @property
     def required_friction_signal(self) -> str:
-        """Name of the friction signal; without one the check is skipped."""
+        """Name of the friction signal; the check is skipped if there is none."""
         if self.friction_signal is None:
             raise Skip("no friction was recorded")
         return self.friction_signal
@@ -205,19 +205,19 @@ class RunSubject:
         return np.full(size, float(self.run.attrs.get("set_normal_force_N", np.nan)))
 
     def segment_means(self, name: str) -> np.ndarray:
-        """Return the mean of a signal in each trimmed segment; skip the check without it."""
+        """Return the mean of a signal in each trimmed segment; the check is skipped without it."""
         if name not in self.signals:
             raise Skip(f"{name} was not recorded")
         return np.array([_mean(self.signals[name][part]) for part in one_by_one(self.slices)])
 
     def segment_stds(self, name: str) -> np.ndarray:
-        """Return the standard deviation of a signal over each trimmed segment."""
+        """Return the standard deviation of a signal in each trimmed segment."""
         parts = (self.signals[name][part] for part in one_by_one(self.slices))
         return np.array([_std(values) for values in parts])
 
     @cached_property
     def typical_friction(self) -> float:
-        """Typical magnitude of the friction signal over the segments, in its unit.
+        """Typical magnitude of the friction signal in the segments, in its unit.
 
         Half the difference between the directions if there are two, so that an offset does not
         count as friction; else the mean magnitude.
@@ -226,7 +226,7 @@ class RunSubject:
         directions = self.segments["direction"].values
         forward, backward = _mean(means[directions > 0]), _mean(means[directions < 0])
         loop = abs(forward - backward) / 2
-        # a rectified coefficient is equal on both strokes
+        # a rectified coefficient has the same sign in both strokes
         typical = loop if loop > 0.1 * _mean(np.abs(means)) else _mean(np.abs(means))
         if not typical > 0:
             raise Skip("there is no friction to compare with")
@@ -234,14 +234,14 @@ class RunSubject:
 
     @cached_property
     def typical_normal_force(self) -> float:
-        """Typical normal force over the segments [N]."""
+        """Typical normal force in the segments [N]."""
         typical = abs(_mean(self.segment_means("normal_force")))
         if not typical > 0:
             raise Skip("there is no normal force to compare with")
         return typical
 
     def unloaded_levels(self, name: str) -> list[float]:
-        """Return the median of a signal in each unloaded rest, in temporal order.
+        """Return the median of a signal in each unloaded rest, in order of time.
 
         A rest is unloaded if the normal force is below a tenth of its mean over the segments for at
         least 20 samples outside the segments. The load ramp may begin in it, hence the median.
@@ -261,9 +261,9 @@ class RunSubject:
         return float(self.segments["sliding_speed"].values[number])
 
     def segment_label(self, number: int) -> str:
-        """Return the label of a segment: its number as in tables, speed, direction, time."""
+        """Return a segment as text: its number as in tables, speed, direction, time."""
         speed, start = self.speed_of(number), float(self.segments["start"].values[number])
-        own = int(self.segments["segment"].values[number])  # numbers include rejected segments
+        own = int(self.segments["segment"].values[number])  # numbering includes rejected segments
         arrow = {1: "forward", -1: "backward"}.get(int(self.segments["direction"][number]), "")
         how = f"{speed_text(speed)} {arrow}".strip()
         return f"segment {own + 1} ({how}, from t = {number_text(start, 4)} s)"
@@ -279,13 +279,13 @@ class RunSubject:
 
     @property
     def slip(self) -> xr.Dataset:
-        """Stick-slip of each segment, as in the results."""
+        """Stick-slip of each segment."""
         if isinstance(self._slip_or_skip, Skip):
             raise self._slip_or_skip
         return self._slip_or_skip
 
     def strong_periods(self, least: float) -> np.ndarray:
-        """Return the number of stick-slip periods in each segment; NaN without significant ones.
+        """Return the number of stick-slip periods in each segment; NaN if not significant.
 
         A wave with too few periods to be reported as stick-slip counts as well.
 
@@ -297,7 +297,7 @@ class RunSubject:
         return np.where(self.oscillates_strongly(least), self.slip["periods"].values, np.nan)
 
     def oscillates_strongly(self, least: float) -> np.ndarray:
-        """Return a mask of segments with variations above a share of typical friction."""
+        """Return a mask of the segments whose variation exceeds a share of the typical friction."""
         name = self.required_friction_signal
         return self.segment_stds(name) > least * self.typical_friction
 
@@ -315,11 +315,11 @@ class RunSubject:
 
     @cached_property
     def reversals(self) -> np.ndarray:
-        """Return the number of sign changes of friction in segments of unknown direction."""
+        """Return the number of sign changes of friction in each segment of unknown direction."""
         values = self.signals[self.required_friction_signal]
         unknown = np.isnan(self.segments["sliding_speed"].values)
         if self.segment_about.velocity_source in ("set speed", "step"):
-            unknown[:] = True  # a set-point has no direction
+            unknown[:] = True  # the set-point of the speed has no direction
         return np.array(
             [
                 reversals(values[part]) if lost else 0
@@ -329,22 +329,22 @@ class RunSubject:
 
     @property
     def sliding_lines(self) -> list[Line]:
-        """Spectral lines without those of an unrecorded reciprocating motion."""
+        """Spectral lines of friction, except those of a reciprocation that was not recorded."""
         return [line for line in self.lines if not self.reversals[line.segment]]
 
     def unit(self, name: str) -> str:
-        """Return the unit of a variable as text, empty for pure numbers."""
+        """Return the unit of a variable as text; "" for pure numbers."""
         unit = self.run[name].attrs.get("units", "")
         return "" if unit == "1" else unit
 
     def noise(self, name: str) -> float:
-        """Return the sample-to-sample noise of a signal, in its unit."""
+        """Return the noise of a signal between neighbouring samples, in its unit."""
         return noise_level(self.signals[name])
 
 
 def _known(values: np.ndarray) -> np.ndarray:
     good = np.isfinite(values)
-    return values if good.all() else values[good]  # a long part is not copied without need
+    return values if good.all() else values[good]  # avoids copying long parts
 
 
 def _mean(values: np.ndarray) -> float:

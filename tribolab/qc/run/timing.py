@@ -1,4 +1,4 @@
-"""Checks on the time axis: order, jitter, gaps, changes of the sampling rate.
+"""Checks on the time: order, jitter, gaps, and changes of the sampling rate.
 
 Each is a plain function from an array and limits to flags (see :mod:`tribolab.qc.flags`).
 """
@@ -13,12 +13,12 @@ from tribolab.arrays.scratch import filled
 from tribolab.friction.time_weights import without_gaps
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 
-_PARTS = 16  # samples on each side whose rates are compared
-_BLOCK = 64  # samples over which the usual sampling interval is taken
+_PARTS = 16  # number of parts whose sampling rates are compared
+_BLOCK = 64  # samples over which the usual sampling interval is determined
 
 
 def time_order(time: np.ndarray) -> np.ndarray:
-    """Flag samples whose time is not later than that of the sample before.
+    """Return flags on samples whose time does not exceed that of the previous sample.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def time_order(time: np.ndarray) -> np.ndarray:
 def time_gaps(
     time: np.ndarray, suspect: float = 5.0, pauses: np.ndarray | None = None
 ) -> np.ndarray:
-    """Flag the samples that follow a gap in time.
+    """Return flags on the samples after each gap in time.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def time_gaps(
 
 
 def _late_intervals(time: np.ndarray, start: int, stop: int, longest: float) -> np.ndarray:
-    """Return a mask of intervals from `start` to `stop` that are longer than those around them."""
+    """Return a mask of the sampling intervals that are much longer than their neighbours."""
     count = time.size - 1
     low, high = max(start - 3, 0), min(stop + 3, count)
     interval = np.diff(time[low : high + 1])
@@ -107,18 +107,18 @@ def _middle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 
 def lost_time(time: np.ndarray, flags: np.ndarray) -> float:
-    """Return the share of the record's duration [1] that is lost in gaps."""
+    """Return the share of the record's duration [1] that gaps take."""
     return float(lengths_of_gaps(time, flags).sum() / (time[-1] - time[0]))
 
 
 def lengths_of_gaps(time: np.ndarray, flags: np.ndarray) -> np.ndarray:
-    """Return the lengths of the gaps before flagged samples [s]."""
+    """Return the lengths [s] of the gaps that end at flagged samples."""
     after = np.flatnonzero(flags[1:] == SUSPECT) + 1
     return time[after] - time[after - 1]
 
 
 def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
-    """Flag parts of the record with irregular sampling intervals.
+    """Return flags on parts of the record with irregular sampling intervals.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     """
     if time.size < _BLOCK:
         return np.full(time.size, NOT_EVALUATED, np.int8)
-    # a block of 64 changes of the interval needs two more samples
+    # the change of an interval takes three samples
     changes = time.size - 2
     blocks = max(1, changes // _BLOCK)
     edges = np.linspace(0, changes, blocks + 1).astype(int)
@@ -167,7 +167,7 @@ def _interval_change(time: np.ndarray) -> np.ndarray:
 
 
 def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
-    """Find the sample at which the sampling rate changes permanently.
+    """Return the sample at which the sampling rate changes permanently; None without a change.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     least = _fastest_interval(interval, factor) or _uneven_interval(interval, factor)
     if not least:
         return None
-    # the cut that separates the logarithms best into two levels
+    # split that separates the logarithms of the intervals best into two levels
     level = np.log(np.maximum(interval, 1e-3 * least))
     count = np.arange(1, level.size)
     total = np.cumsum(level)
@@ -204,7 +204,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
 
 
 def _fastest_interval(interval: np.ndarray, factor: float) -> float:
-    """Return the smallest mean interval of equal numbers of rows; 0 if all are equal."""
+    """Return the smallest mean interval of parts with equal row counts; 0 if they are similar."""
     parts = min(_PARTS, interval.size // 8)
     if parts < 2:
         return 0.0
@@ -214,17 +214,17 @@ def _fastest_interval(interval: np.ndarray, factor: float) -> float:
 
 
 def _uneven_interval(interval: np.ndarray, factor: float) -> float:
-    """Return the usual interval if equal periods have very different numbers of rows, else 0."""
+    """Return the usual interval if equal periods have very different row counts; else 0."""
     cumulative = np.cumsum(interval)
     marks = np.linspace(0, cumulative[-1], _PARTS + 1)
     rows = np.diff(np.searchsorted(cumulative, marks))
-    # irregular intervals make numbers of rows scatter by their square roots at most
+    # for irregular intervals, row counts scatter by at most their square root
     clear = rows.max() > factor * rows.min() + 4 * np.sqrt(rows.max())
     return float(median(interval)) if clear else 0.0
 
 
 def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np.ndarray:
-    """Find the samples at which the sampling rate changes for a minimum number of samples.
+    """Return the samples at which the sampling rate changes, each rate lasting some samples.
 
     Parameters
     ----------
@@ -245,17 +245,17 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     blocks = (time.size - 1) // stretch
     level = np.empty(blocks)
     for begin, end in pieces(0, blocks, block=stretch):
-        # two intervals more on either side: a gap is one next to those around it
+        # two more intervals on either side, because gaps are found by comparison with neighbours
         low, high = max(begin * stretch - 2, 0), end * stretch + 2
         interval = without_gaps(np.diff(time[low : high + 1]))
         own = interval[begin * stretch - low :][: (end - begin) * stretch]
         level[begin:end] = own.reshape(-1, stretch).mean(axis=1)
     level = np.log(np.maximum(level, np.finfo(float).tiny))
-    # the block with the change may have any mean: compare across it
+    # compare the blocks on both sides of the one in which the rate changes
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)
     begins = np.flatnonzero(jump & ~np.concatenate([[False], jump[:-1]]))
     changes = []
-    for block in begins:  # loop over the few changes of the rate
+    for block in begins:
         start = block * stretch
         cut = rate_change(time[start : start + 3 * stretch + 1], factor)
         if cut is not None:

@@ -25,7 +25,7 @@ def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[
 
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
-    """Return results for each doubt about the zero, without flags on samples."""
+    """Return a result for each doubt about the zero, without flags on samples."""
     doubts: list[Doubt] = SegmentAttributes.from_attrs(subject.friction.attrs).zero_doubts
     results = []
     for doubt in doubts:

@@ -23,7 +23,7 @@ _SLOPE_OF_NOISE = float(np.sqrt(2 * (45**2 + 9**2 + 1)) / 60)
 
 
 def _rq(profile: xr.Dataset) -> float:
-    """Return Rq [m] of a profile without form; Pq if it is too short for a cut-off."""
+    """Return Rq [m] of a profile without form; Pq if it is shorter than a cut-off allows."""
     try:
         return float(roughness_parameters(profile).Rq)
     except AnalysisError:
@@ -83,7 +83,7 @@ def _stuck(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             continue
         part = slice(*stretch)
         if (~np.isfinite(subject.rows[row, part])).mean() > limits["missing"]:
-            continue  # a bridged gap is a straight line too
+            continue  # an interpolated gap is also a straight line
         flags[row, part] = SUSPECT
         found.append((row, stretch[0], stretch[1]))
     if not found:

@@ -11,18 +11,18 @@ from scipy import ndimage
 from tribolab.arrays.medians import median, medians_of_rows
 from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 
-_BLOCKS = {1: 20, 2: 4}  # blocks of the baseline along each axis of profiles and maps
-_WIDEST = {1: 0.04, 2: 0.2}  # share of all points; a wider feature is form, such as a chamfer
-_STUCK_BLOCKS = 50  # blocks of a profile in which a stuck stylus is looked for
+_BLOCKS = {1: 20, 2: 4}  # blocks of the baseline along each axis, for profiles (1) and maps (2)
+_WIDEST = {1: 0.04, 2: 0.2}  # share of all points; wider features are form, such as a chamfer
+_STUCK_BLOCKS = 50  # number of blocks of a profile in which a stuck stylus is searched
 _MIN_IN_BLOCK = 16
-# half widths of a noisy stop, in units of the blocks' roughness
+# half widths of the band of heights at a noisy stop, relative to the roughness of the blocks
 _BANDS = 0.02 * np.sqrt(2.0) ** np.arange(11)
-_PILE_RATIO = 4.0  # of points in the band at the end of the range to the next; summits give 1.4
-_TRIM = 20  # points that may share an end of the range with one outlier
+_PILE_RATIO = 4.0  # points in the outermost band over those in the next one; 1.4 for rough summits
+_TRIM = 20  # up to so many points at an end of the range may be outliers
 
 
 def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int) -> np.ndarray:
-    """Return a mask of the few peaks or valleys far above all others: dust, scratches, pores.
+    """Return a mask of the few peaks or valleys far from all others: dust, scratches, pores.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int
 
 
 def _baseline(height: np.ndarray) -> np.ndarray:
-    """Return the baseline through the medians of blocks."""
+    """Return a baseline through the medians of blocks."""
     sizes = [max(8, -(-points // _BLOCKS[height.ndim])) for points in height.shape]
     counts = [max(1, points // size) for points, size in zip(height.shape, sizes, strict=True)]
     if min(counts) < 2:
@@ -90,7 +90,7 @@ def _baseline(height: np.ndarray) -> np.ndarray:
         blocks = parted.reshape(counts[0] * counts[1], -1)
     middles = medians_of_rows(blocks).reshape(counts)
     for axis, (points, size, count) in enumerate(zip(height.shape, sizes, counts, strict=True)):
-        places = (np.arange(points) + 0.5) / size - 0.5  # in blocks, from the centre of the first
+        places = (np.arange(points) + 0.5) / size - 0.5  # in blocks, from the first one's centre
         left = np.clip(places.astype(int), 0, count - 2)
         share = np.clip(places - left, 0.0, 1.0)
         share = share if axis == height.ndim - 1 else share[:, None]
@@ -99,7 +99,7 @@ def _baseline(height: np.ndarray) -> np.ndarray:
 
 
 def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, int] | None:
-    """Find a part where the stylus is stuck: a straight line with at most white noise.
+    """Return the interval in which the stylus is stuck: a straight line with white noise at most.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
 
 
 def _line_scatter(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the standard deviation of rows about straight lines, and of their white noise."""
+    """Return the scatter of rows about straight lines, and the white-noise part of it."""
     x = np.linspace(-1.0, 1.0, rows.shape[1])
     rest = rows - rows.mean(axis=1, keepdims=True)
     rest = rest - np.outer(rest @ x / (x @ x), x)
@@ -162,12 +162,12 @@ def _line_scatter(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_white(spread: np.ndarray, noise: np.ndarray) -> np.ndarray:
-    """Return whether neighbours differ like independent heights (von Neumann's ratio)."""
+    """Return whether neighbouring heights are independent (von Neumann's ratio)."""
     return np.asarray(noise**2 >= 0.6 * spread**2)
 
 
 def _widen(height: np.ndarray, first: int, last: int, near: float) -> tuple[int, int]:
-    """Extend a stretch in both directions as far as its line continues."""
+    """Return an interval extended in both directions as far as its straight line continues."""
     x = np.arange(height.size, dtype=float)
     slope, level = np.polyfit(x[first:last], height[first:last], 1)
     away = np.abs(height - level - slope * x) > near
@@ -179,7 +179,7 @@ def _widen(height: np.ndarray, first: int, last: int, near: float) -> tuple[int,
 
 
 def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
-    """Return a mask of points clipped at an end of the range, with the noise of the gauge.
+    """Return a mask of points clipped at an end of the measuring range, with noise.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
 
 
 def longest_run(marked: np.ndarray) -> int:
-    """Return the length of the longest run of True.
+    """Return the length of the longest sequence of True.
 
     Examples
     --------
@@ -238,7 +238,7 @@ def longest_run(marked: np.ndarray) -> int:
 
 
 def _white_within(values: np.ndarray, marked: np.ndarray) -> bool:
-    """Return whether the marked values scatter about one level like independent readings."""
+    """Return whether the marked values scatter like independent readings of one height."""
     both = marked[1:] & marked[:-1]
     if both.sum() < 8:
         return False
@@ -247,7 +247,7 @@ def _white_within(values: np.ndarray, marked: np.ndarray) -> bool:
 
 
 def rounding_step(height: np.ndarray) -> float:
-    """Return the rounding step of the heights [m], even of a levelled profile; or 0.
+    """Return the rounding step of the heights [m], also after levelling; 0 if there is none.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""All checks on scans of one surface, with a table of findings."""
+"""All checks on the scans of one surface, with a table of findings."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def check_scans(
     skip: Sequence[str] = (),
     results: xr.Dataset | Sequence[xr.Dataset] | None = None,
 ) -> Findings:
-    """Run all checks on scans of one surface: faults, their place, their effect, what to do.
+    """Return the findings of all checks on scans: errors, their place, effect and remedy.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def check_scans(
 def _flag_result(
     subject: ScanSubject, flags: np.ndarray, text: str, fail_share: float
 ) -> list[Result]:
-    """Return the result from flags (row, x): number of points, place and severity."""
+    """Return a result from flags (row, x): number of points, place and severity."""
     bad = np.isin(flags, (SUSPECT, FAIL))
     count = int(bad.sum())
     share = count / flags.size
@@ -158,7 +158,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     )
     text += f"; {cropped}" if cropped else ""
     whole = float(subject.x[-1] - subject.x[0])
-    # a map continues in other rows across a gap, a profile does not
+    # a map is also known in the rows next to a gap, a profile is not
     far = not subject.is_map and span > limits["stretch"] * whole
     status = "pass"
     if share > limits["suspect"] or longest > limits["in_a_row"] or far:
@@ -217,7 +217,7 @@ def _level(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if not subject.usable:
         return [Result("skipped", "height", "there are too few heights")]
     if subject.is_map and not level_map(subject.rows):
-        return [Result("pass", "height", "the heights vary")]  # single rows may have no roughness
+        return [Result("pass", "height", "the heights vary")]  # a single row may be level
     level = subject.level
     if not level:
         return [Result("pass", "height", "the heights vary")]

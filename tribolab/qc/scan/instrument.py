@@ -1,4 +1,4 @@
-"""Checks on the metadata of a scan: spacing, length, and the instrument's own results."""
+"""Checks on the metadata of a scan: pitch, length, and the roughness found by the instrument."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             continue
         is_attr = subject.attribute_values(f"{name}_m")
         stated_ones = np.broadcast_to(is_attr if is_attr else [real[name]], len(stated))
-        # n points are n - 1 steps; accept a length that is one step longer
+        # n points have n - 1 steps; a length of n steps is accepted too
         allowance = real["pitch"] if name == "length" else 0.0
         apart = np.maximum(np.abs(np.array(stated) - stated_ones) - allowance, 0.0) / stated_ones
         row = int(np.nanargmax(apart))
@@ -75,7 +75,7 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _point_count(subject: ScanSubject) -> Result | None:
-    """Report a number of points that differs from that stated in the file; else None."""
+    """Return a result if the number of points differs from that stated in the file; else None."""
     stated = [number for number in subject.attribute_values("stated_points") if np.isfinite(number)]
     points = subject.scans.sizes["x"]
     if subject.is_map or not stated or all(abs(number - points) <= 1 for number in stated):
@@ -86,7 +86,7 @@ def _point_count(subject: ScanSubject) -> Result | None:
 
 
 def _implausible_size(subject: ScanSubject, limits: Mapping[str, float]) -> Result | None:
-    """Report a scan that is longer or steeper than surfaces are; else None."""
+    """Return a result if a scan is longer or steeper than real surfaces; else None."""
     length = float(subject.x[-1] - subject.x[0])
     largest = limits["map"] if subject.is_map else limits["profile"]
     if length > largest:
@@ -110,7 +110,7 @@ def _implausible_size(subject: ScanSubject, limits: Mapping[str, float]) -> Resu
 
 
 def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], float]]:
-    """List the instrument's results: source, values [m], and cut-off [m] or NaN."""
+    """Return the instrument's roughness values: source, values [m], and cut-off [m] or NaN."""
     sets = []
     for number, result in enumerate(subject.results, start=1):
         values = {n: float(result[n]) for n in _COMPARED if n in result}
@@ -125,19 +125,19 @@ def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], floa
 
 
 def _computed_roughness(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
-    """Return possible roughness values of the instrument: filtered (either cut-off) or levelled."""
+    """Return the roughness that the instrument may have found: either cut-off, or levelled only."""
     parameters = []
     for cutoff in ("auto", None) if np.isnan(cut) else (cut, None):
         try:
             values = roughness_parameters(profile, lambda_c=cutoff)
-        except AnalysisError:  # too short for two cut-offs
+        except AnalysisError:  # shorter than two cut-offs
             continue
         parameters.append({name: float(values[name]) for name in _COMPARED})
     return parameters
 
 
 def uncomputed_values(results: xr.Dataset) -> Result | None:
-    """Report values that the instrument could not compute; else None."""
+    """Return a result if the instrument could not compute some values; else None."""
     errors = str(results.attrs.get("instrument_errors", "none"))
     if errors in ("", "none"):
         return None
@@ -160,7 +160,7 @@ def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     cut = sets[0][2] if sets else float("nan")
     ours = [_computed_roughness(profile, cut) for profile in profiles]
     for number, (source, values, cut) in enumerate(sets):
-        alone = len(sets) == len(profiles) == len(subject.rows)  # one set for each profile
+        alone = len(sets) == len(profiles) == len(subject.rows)  # one set of values per profile
         candidates = ours[number] if alone else [parameters for many in ours for parameters in many]
         for name, value in values.items():
             computed = [parameters[name] for parameters in candidates if parameters[name] > 0]

@@ -15,12 +15,12 @@ from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.qc.scan.artefacts import longest_run, noisy_stop, rounding_step
 from tribolab.surface.roughness import roughness_parameters
 
-_MOVED = 0.02  # share of points that change, above which changes are not rare jumps
-_BLOCK = 512  # points whose slopes are compared
+_MOVED = 0.02  # share of changed points above which changes are not rare jumps
+_BLOCK = 512  # number of points whose slopes are compared
 
 
 def end_points(marked: np.ndarray) -> np.ndarray:
-    """Return the marked points of each row (row, x) that are connected to one of its ends.
+    """Return the marked points of each row (row, x) that form a sequence from one of its ends.
 
     Examples
     --------
@@ -34,7 +34,7 @@ def end_points(marked: np.ndarray) -> np.ndarray:
 
 
 def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
-    """Flag points where the height jumps by far more than between neighbours nearby.
+    """Return flags on points at which the height jumps by far more than nearby.
 
     Parameters
     ----------
@@ -77,10 +77,10 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     digit = rounding_step(height)
     for start, block, middle, scale in zip(
         np.cumsum([0, *(len(b) for b in blocks[:-1])]), blocks, middles, spread, strict=True
-    ):  # loop over blocks, not over points
+    ):
         size = np.nan_to_num(np.abs(block - middle))
         limit = max(factor * max(scale, least), 3.0 * digit)
-        # a flank of several points is not a jump: compare with the steps next to it
+        # compare with the neighbouring steps: a flank of several points is no jump
         signed = np.nan_to_num(block - middle)
         nearby = np.zeros(size.size)
         nearby[1:] = np.maximum(nearby[1:], np.maximum(signed[:-1] * np.sign(signed[1:]), 0.0))
@@ -96,7 +96,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
 
 
 def _spread(values: np.ndarray, middle: float) -> float:
-    """Return the robust standard deviation of differences; without the zeros if most are zero."""
+    """Return the robust standard deviation of differences; zeros are left out if they are most."""
     away = np.abs(values[np.isfinite(values)] - middle)
     if not away.size:
         return 0.0
@@ -108,7 +108,7 @@ def _spread(values: np.ndarray, middle: float) -> float:
 
 
 def flag_clipping(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> np.ndarray:
-    """Flag flat peaks or valleys at the end of the gauge's range.
+    """Return flags on flat peaks or valleys at an end of the measuring range.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def flag_clipping(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> n
 def pool_bands(
     logs: np.ndarray, weights: np.ndarray, fewest: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pool neighbouring bands until each has enough independent values; drop the remainder.
+    """Return bands pooled until each has enough independent values; the remainder is dropped.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def pool_bands(
     (array([[0.5, 3. ]]), array([2., 2.]))
     """
     starts, total = [], 0.0
-    for band, weight in enumerate(weights):  # loop over some forty bands
+    for band, weight in enumerate(weights):
         if total == 0.0:
             starts.append(band)
         total += weight
@@ -182,7 +182,7 @@ def pool_bands(
 def odd_one_out(
     logs: np.ndarray, weights: np.ndarray, factor: float, certainty: float
 ) -> tuple[int, float]:
-    """Find the repeat whose spectrum differs from the spectra of the others.
+    """Return the repeat whose spectrum differs from those of all others, if there is one.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def odd_one_out(
         middle = np.median(others, axis=0)
         deviation = logs[repeat] - middle
         scatter = np.sqrt((1.0 + 1.5 / (repeats - 1)) / np.maximum(weights, 1.0))
-        # if the others disagree as much among themselves, this one is not an outlier
+        # if the others differ from each other as much, none is an outlier
         apart = np.abs(others - middle).max(axis=0)
         real = np.abs(deviation) > np.maximum(certainty * scatter, 2.0 * apart)
         odd.append(np.abs(deviation)[real].max(initial=0.0))
@@ -228,7 +228,7 @@ def odd_one_out(
 
 
 def cost_of_gaps(profile: xr.Dataset | None) -> str:
-    """Return the uncertainty of Rq of a profile without form due to missing heights, as text.
+    """Return the uncertainty of a profile's Rq due to missing heights, as text.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Checks on several scans of one surface, and on results without a profile."""
+"""Checks on several scans of one surface, and on roughness values without a profile."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def check_scan_set(
     skip: Sequence[str] = (),
     results: Sequence[Sequence[xr.Dataset]] | None = None,
 ) -> list[Findings]:
-    """Check each scan of a surface separately, and the scans against each other.
+    """Return the findings of the checks on each scan, and on the scans against each other.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def check_scan_set(
 
 
 def check_results(results: xr.Dataset) -> Findings:
-    """Check an instrument's own results that have no profile.
+    """Return the findings of the checks on roughness values that have no profile.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
 def _repeats(
     scans: list[xr.Dataset], numbers: list[int], limits: CheckLimits | None, skip: Sequence[str]
 ) -> dict[int, Result]:
-    """Compare scans of equal shape with each other."""
+    """Report a scan of a surface that differs from the others of the same shape."""
     rows = [np.asarray(scan.height.transpose(..., "x").values, dtype=float) for scan in scans]
     names = [str(scan.attrs.get("source", f"scan {n + 1}")) for n, scan in enumerate(scans)]
     first = scans[0]
@@ -129,7 +129,7 @@ def _repeats(
 
 
 def _add_repeats(findings: Findings, repeats: Result) -> Findings:
-    """Add the result for the repeats to the findings of a single scan."""
+    """Return the findings of a single scan, including the result for the repeats."""
     rows = tuple(
         (check, repeats if check.name == _REPEATS else result) for check, result in findings.results
     )

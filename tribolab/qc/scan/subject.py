@@ -1,4 +1,4 @@
-"""Scans under examination, with quantities that several checks need, computed once."""
+"""Scans that are checked, with quantities that several checks need."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.level import level_rows
 from tribolab.surface.spectra.psd import psd_1d
 
-_MIN_HEIGHTS = 8  # heights of a profile; form and roughness need more
+_MIN_HEIGHTS = 8  # fewest heights of a profile; form and roughness need more
 
 
 class ScanSubject:
@@ -50,7 +50,7 @@ class ScanSubject:
 
     @cached_property
     def names(self) -> list[str]:
-        """Label of each row."""
+        """Name of each row."""
         if "file" in self.scans:
             return [str(name) for name in np.atleast_1d(self.scans["file"].values)]
         if len(self.rows) == 1 and "source" in self.scans.attrs:
@@ -59,7 +59,7 @@ class ScanSubject:
         return [f"{kind} {number}" for number in range(1, len(self.rows) + 1)]
 
     def attribute_values(self, key: str) -> list[float]:
-        """Return the values of an attribute: one for each row, one for all, or none."""
+        """Return the values of an attribute: one for each row, one for all rows, or none."""
         value = self.scans.attrs.get(key)
         if isinstance(value, str):
             parts = [part.strip() for part in value.split(";")]
@@ -67,12 +67,12 @@ class ScanSubject:
         return [] if value is None else [float(value)]
 
     def place(self, row: int, first: int, last: int) -> str:
-        """Return the place of an interval of a row as text."""
+        """Return an interval of a row as text."""
         text = f"{self.names[row]}, x = {self.x[first] * 1e3:.6g} mm"
         return text if last <= first else f"{text} to {self.x[last] * 1e3:.6g} mm"
 
     def reshape_flags(self, rows: np.ndarray) -> np.ndarray:
-        """Return flags (row, x) with the dims of the heights."""
+        """Return flags (row, x) in the dimensions of the heights."""
         dims = self.scans.height.transpose(..., "x").dims
         array = xr.DataArray(rows.reshape([self.scans.sizes[d] for d in dims]), dims=dims)
         return array.transpose(*self.scans.height.dims).values
@@ -90,36 +90,36 @@ class ScanSubject:
 
     @cached_property
     def filled_profiles(self) -> list[xr.Dataset]:
-        """Usable rows as profiles without dropouts."""
+        """Profiles of the usable rows, with dropouts filled."""
         x = self.x - self.x[0]
         profiles = [xr.Dataset({"height": ("x", self.rows[n])}, {"x": x}) for n in self.usable]
         return [fill_dropouts(profile) for profile in profiles]
 
     def profile_of(self, row: int) -> xr.Dataset | None:
-        """Return a row without form, filled heights marked; None if it has too few heights."""
+        """Return one row without form, filled heights marked; None if too few heights are known."""
         _, profiles = self.form
         return profiles[self.usable.index(row)] if row in self.usable else None
 
     @cached_property
     def form(self) -> tuple[str, list[xr.Dataset]]:
-        """Profiles without form, and the form removed: a circle, or a line if none fits."""
+        """Profiles without form, and the removed form: a circle, or a line if none fits."""
         if "form_removed" in self.scans.attrs:
             return "none", self.filled_profiles
         try:
             return "circle", [remove_form(profile, "circle") for profile in self.filled_profiles]
-        except AnalysisError:  # not a circle: a ramp, a profile of two flats, a chamfer
+        except AnalysisError:  # no circle fits: a ramp, a profile of two flats, a chamfer
             return "tilt", [remove_form(profile, "tilt") for profile in self.filled_profiles]
 
     @cached_property
     def level(self) -> list[int]:
-        """Indices, among the usable rows, of those without roughness."""
+        """Positions, among the usable rows, of those without roughness."""
         _, profiles = self.form
         flat = [level_rows(profile.height.values[None])[0] for profile in profiles]
         return np.flatnonzero(flat).tolist()
 
     @cached_property
     def affinity_objection(self) -> str:
-        """Reason why the surface cannot be self-affine; empty if it can."""
+        """Why the surface cannot be self-affine; "" if it can."""
         x = self.x - self.x[0]
         if not self.is_map:
             _, profiles = self.form
