@@ -17,7 +17,7 @@ _Part = TypeVar("_Part")
 def pieces(
     start: int, stop: int, length: int | None = None, *, block: int = 1
 ) -> Iterator[tuple[int, int]]:
-    """Return the slices that divide a range of samples, or of blocks of samples, into pieces.
+    """Yield the first sample of each piece of a range, and the one after its last.
 
     Their memory is returned after some pieces, and after the last.
 
@@ -51,7 +51,7 @@ def pieces(
 
 
 def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Return the slices that divide blocks of unequal length into pieces of at least one block.
+    """Yield the first block of each piece of at least one block, and the one after its last.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Work of adhesion, dry and in a liquid, from surface energies and their literature spread."""
+"""Work of adhesion, dry and in a liquid, from surface energies with their literature bounds."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ class ShearStressFits(Conditions[ShearStressFit]):
         return merged.reindex(order)
 
     def _repr_html_(self) -> str:
-        """Return HTML with shear stress, error and fit of each condition; other numbers unfold."""
+        """Return HTML with shear stress, error and fit of each condition; other numbers folded."""
         rows = "".join(
             f"<tr><th>{labels_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} MPa</td>"
             f"<td>{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
@@ -154,7 +154,7 @@ def fit_shear_stresses(
 
 
 def _further_dims(given: Mapping[str, object]) -> dict[Hashable, Any]:
-    """Return dims and labels that tell conditions apart, those of the measured curves first."""
+    """Return the dims and labels that distinguish conditions; those of the curves come first."""
     coords: dict[Hashable, Any] = {}
     for value in given.values():
         holder = _main_variable(value)

@@ -193,7 +193,7 @@ class ShearStressFit:
         return pd.DataFrame(rows, columns=columns).set_index("name")
 
     def _repr_html_(self) -> str:
-        """Return HTML sentences on shear stress, error and fit; other numbers unfold."""
+        """Return HTML sentences on shear stress, error and fit; other numbers are folded away."""
         stress, error = 1e-6 * self.shear_stress, 1e-6 * self.total_error
         without = "" if self.common_error else ", statistical only"
         if self.spectrum_scanned and self.spectrum_error is None:

@@ -13,7 +13,7 @@ from tribolab.lubrication.factors import FactorTable, FlowFactors
 EXCESS_OF_SHEAR = 0.24  # largest excess of phi_f over numerical results, from 2 to 3.2 h_rms
 LACK_OF_PRESSURE = 0.17  # largest lack of p(u) relative to numerical results, below _CLOSE
 _NUMERICS, _GAUSSIAN = 3.2, 5.0  # u/h_rms: end of numerical results, start of Gaussian gaps
-_CLOSE, _APART = 0.14, 0.28  # u/h_rms between which the correction of p(u) vanishes
+_CLOSE, _APART = 0.14, 0.28  # u/h_rms at which the correction of p(u) starts to decrease, and ends
 
 
 def factors_of_numerics(factors: FlowFactors) -> FlowFactors:

@@ -91,7 +91,7 @@ def _film_between(
     line = between.straight[:, 1] * around[1] + between.straight[:, 2] * around[2]
     bent = u - line
     share = between.straight + part * (share - between.straight)
-    moving = np.where((part > 0) & (part < 1), bent / span, 0.0)  # part's own derivative
+    moving = np.where((part > 0) & (part < 1), bent / span, 0.0)  # part varies with the film
     first = around[1] < around[2]
     share[:, 1] += np.where(first, moving, 0.0)
     share[:, 2] += np.where(first, 0.0, moving)

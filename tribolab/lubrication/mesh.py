@@ -20,10 +20,10 @@ _ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # position, weight, and width in units 
 class Mesh(NamedTuple):
     """Cells in units of the contact half-width b; the flat slides to +x, the inlet is at x < 0."""
 
-    x: np.ndarray  # centres (n)
-    width: np.ndarray  # weights for integrals over all cells (n)
-    weight: np.ndarray  # points between centres, at which the flow is computed
-    between: Between  # points for the flow from centre to centre
+    x: np.ndarray  # centres of the cells (n)
+    width: np.ndarray  # widths of the cells (n)
+    weight: np.ndarray  # weights of values at the centres, for integrals over all cells (n)
+    between: Between  # Gauss points between centres, at which the flow is computed
     kernel: np.ndarray  # displacement by unit pressure in a cell, for E* = 1 (n, n)
     elastic: np.ndarray  # K, the inverse of the kernel, with the column -K 1 appended (n, n + 1)
     push: np.ndarray  # load by a unit of each column, weight @ elastic (n + 1)

@@ -282,7 +282,7 @@ def _rupture(
 def _cavity(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """Return the same as `_rupture` for a liquid that sustains tension and may re-form a full film.
+    """Return first cell of the cavity, first cell behind it, and flux, if the liquid bears tension.
 
     Without a cavity the flux is the mean over all faces. If the pressure would fall below the
     lowest, the film ruptures as in `_rupture`, but at that pressure. It forms again in the first

@@ -150,7 +150,7 @@ def viscous_heating(
     divided between both bodies.
     """
     flux = friction * load * speed / (2 * half_width)
-    diffusivity = conductivity / 2e6  # heat capacity of polymers and liquids, J/(m3 K)
+    diffusivity = conductivity / 2e6  # volumetric heat capacity 2e6 J/(m3 K)
     depth = min(half_width, float(np.sqrt(diffusivity * half_width / max(speed, 1e-30))))
     return float(flux * depth / conductivity / 2)
 

@@ -186,7 +186,7 @@ def context_of(document: Json) -> Json:
 
 
 def _pair_rows(table: pd.DataFrame) -> list[tuple[Json, Published]]:
-    """Yield each row with its published number; both are in the same order."""
+    """Return each row with its published number; both are in the same order."""
     pairs = list(zip(rows_of(table), xu2026.published, strict=True))
     for record, known in pairs:
         if (record["quantity"], record["condition"]) != (known.quantity, known.condition):

@@ -14,7 +14,7 @@ _FITTED = 1  # number of fitted parameters, the shear stress
 
 
 def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> dict[str, float]:
-    """Return the misfit of a model to a measured curve, its p value, and its standard error.
+    """Return the misfit of a model to a measured curve, its p value, and the bound of its error.
 
     Parameters
     ----------

@@ -131,7 +131,7 @@ def _over_speed(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.
 def _response(
     model: JointModel, posterior: Posterior, priors: JointPriors
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return d ln mu/d theta (point, parameter), and the derivatives of the fit by the points."""
+    """Return d ln mu/d theta (point, parameter), and the parameters' response to the points."""
     weights = posterior.weight
     tau, kappa = weights @ posterior.level, weights @ posterior.correlated
     points, where = model.points, model.parameters

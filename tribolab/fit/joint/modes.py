@@ -12,7 +12,7 @@ from tribolab.fit.joint.model import JointModel, Shared
 
 _MAX_STEPS = 200
 _NEGLIGIBLE_LN_ODDS = 25.0  # difference of log probability from the best mode
-_CONVERGED_DECREMENT = 1e-6  # of the log probability; 1e-6 is a thousandth of a standard deviation
+_CONVERGED_DECREMENT = 1e-6  # gain in log probability of a converged mode: 1e-3 standard deviations
 _MAX_GAIN = 10.0  # assumed total gain of a search, in expected gains of the next step
 _MIN_GAIN = 0.5  # share of the expected gain below which a shorter step is tried
 # the second set is tried if none of the first is better

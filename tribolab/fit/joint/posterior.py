@@ -1,4 +1,4 @@
-"""Posterior of a joint fit: a normal for each size of the shared errors, weighted by evidence."""
+"""Posterior of a joint fit: normal distributions, one per size of shared errors, weighted."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LEVEL_GRID = np.array([0.06, 0.25, 0.5, 0.8, 1.2, 1.8, 2.6])
 _CORRELATED_GRID = np.array([0.06, 0.3, 0.6, 1.0, 1.5, 2.3])
 _MAX_WEIGHT_AT_END = 0.2
 _MAX_WIDENINGS = 5
-_MAX_DECREMENT = 1e-2  # for a mode that converges slowly
+_MAX_DECREMENT = 1e-2  # largest remaining gain of a mode that converges slowly
 _MIN_MODE_WEIGHT = 1e-4  # weight above which a mode must have converged
 
 

@@ -58,7 +58,7 @@ class Marginal:
 
     @property
     def identified(self) -> str:
-        """Whether data determine it: "yes", "weakly", "not identified" or "held fixed"."""
+        """Whether data fix the parameter: "yes", "weakly", "not identified" or "held fixed"."""
         if np.isnan(self.reduction):
             return "held fixed"
         if self.reduction < limits.MIN_REDUCTION_OF_PRIOR.value:
