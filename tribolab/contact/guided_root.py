@@ -63,7 +63,7 @@ def guided_root(
     """
     every = np.arange(low.size)
     start, *_ = _find_bracketed(cheap, low, high, every, iterations, _ROUGH)
-    outside = np.flatnonzero(np.isnan(start))  # cheap root just outside: take the nearer end
+    outside = np.flatnonzero(np.isnan(start))  # these cheap roots lie just outside
     if outside.size:
         ends = np.array([low[outside], high[outside]])
         size = np.abs([cheap(end, outside) for end in ends])

@@ -44,7 +44,7 @@ class RoundProfile(NamedTuple):
     """Pressure and mean separation in the rings of a dry point contact, with convergence data."""
 
     radius: np.ndarray  # centres of the rings [m] (n)
-    area: np.ndarray  # of the rings [m2] (n)
+    area: np.ndarray  # area of each ring [m2] (n)
     pressure: np.ndarray  # [Pa] (n)
     separation: np.ndarray  # [m] (n)
     steps: int

@@ -91,7 +91,7 @@ def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
 
 
 def _completed(text: str, ax: str) -> str:
-    """Return a docstring to which the parameters common to all figures are added."""
+    """Return a docstring with the parameters that all figures have in common."""
     common = _PARAMETERS.format(ax=ax)
     before, found, after = text.partition("\n\n    Notes\n")
     if not found:

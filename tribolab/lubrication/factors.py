@@ -363,7 +363,7 @@ def _averages(
     conductance = _effective(gap**3, weight, touching, dimension)
     denominator = gap**3 + (dimension - 1) * conductance[:, None]
     entrained = dimension * conductance * (weight * gap / denominator).sum(axis=1)
-    # gaps below the cut-off contain no fluid; the rest is D = u^3 below percolation
+    # gaps below the cut-off contain no fluid; the conductance D is u^3 below percolation
     fluid = np.where(gap >= cutoff, weight, 0.0)
     moved = gap * (gap - entrained[:, None]) / denominator
     correction = 3 * mean * (fluid * moved).sum(axis=1)

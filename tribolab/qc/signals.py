@@ -79,7 +79,7 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 def _height(step: np.ndarray) -> np.ndarray:
     """Return how far each sample, except two at both ends, deviates from its neighbours."""
     bend = np.diff(step)
-    # deviations from the previous sample, and from the line through the previous two; then right
+    # deviation from the previous sample and from the line through the previous two; then the next
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
     upward = np.minimum(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]))
     downward = np.maximum(np.maximum(sides[0], sides[1]), np.maximum(sides[2], sides[3]))

@@ -37,7 +37,7 @@ class Computed(NamedTuple):
     exact: bool = False  # closed form, which must agree to the printed digits
     low: float = math.nan  # lower end of a range, if one printed number summarises several
     high: float = math.nan
-    given: str = ""  # why agreement follows from how an input was chosen
+    given: str = ""  # reason if it agrees because an input was fitted to it
 
 
 class Measured(NamedTuple):

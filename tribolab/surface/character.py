@@ -15,7 +15,7 @@ _LOBE = 2  # spectral lines on each side over which a Hann window spreads a wave
 _DOMINANT = 0.55  # share of the mean square height that no single wave of a random surface reaches
 _NEIGHBOURS, _EXCLUDED = 24, 4  # lines on each side for the background level, nearest ones excluded
 _CHANCE = 1e-6  # accepted probability that a line of random heights exceeds its background so far
-_MAX_SLOPE_RATIO = 0.4  # rms slope along over across the lay; small smooth maps reach 0.6 by chance
+_MAX_SLOPE_RATIO = 0.4  # ratio of rms slopes along and across the lay; smooth maps reach 0.6
 
 
 def self_affinity_objection(scans: xr.Dataset) -> str:

@@ -53,7 +53,7 @@ class _Box:
     y: Scale
 
     def at(self, x: object, y: object) -> PlacedPoint | None:
-        """Return the position of a point in the panel; points far outside are clipped."""
+        """Return the position [px] of a point in the panel; points far outside are clipped."""
         across, up = self.x.place(x), self.y.place(y)
         if across is None or up is None:
             return None

@@ -100,7 +100,7 @@ def correlation(shift: float, flanks: float = 1.0) -> float:
 def shape(
     bins: Bins, slope: np.ndarray, spacing: float, flanks: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean over the node value of a power law in each bin, and its independent values.
+    """Return the bin mean of a power law relative to its node value, and the independent values.
 
     Parameters
     ----------
