@@ -91,7 +91,7 @@ def one_by_one(parts: Iterable[_Part]) -> Iterator[_Part]:
 
 
 def anywhere(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> bool:
-    """Return whether a test is true for any sample, stopping at the first.
+    """Return whether any sample passes a test; stops at the first that does.
 
     Examples
     --------

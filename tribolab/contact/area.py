@@ -59,7 +59,7 @@ def area_of(reduced: np.ndarray, area: AreaTheory) -> np.ndarray:
 
 
 def check_area(area: str) -> None:
-    """Raise an AnalysisError unless the argument is an `AreaTheory`."""
+    """Raise an error unless the argument names one of the theories of the contact area."""
     known = list(get_args(AreaTheory))
     if area not in known:
         raise AnalysisError(f"area: '{shown(area)}' is not one{nearest(area, known)}")

@@ -153,7 +153,7 @@ def fit_shear_stress(
     moved = _model_errors(dense, stress, speed, settings.abscissa_error, inputs, free)
     if moved.size:
         errors = errors.with_part(moved)
-        if free:  # repeat the fit with the full covariance
+        if free:  # refit with the full covariance
             best = _fit_free(computed, best, mu[used], errors.at(used), used)
             model_curve = computed(best)
             fluid, area = _parts(model_curve)

@@ -394,7 +394,7 @@ def _effective(
 
 
 def check_rough_body(rough_body: str) -> None:
-    """Raise an AnalysisError unless the argument names a valid `RoughBody`."""
+    """Raise an error unless the argument is "stationary" or "moving"."""
     known = ["stationary", "moving"]
     if rough_body not in known:
         raise AnalysisError(

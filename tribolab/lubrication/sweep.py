@@ -29,7 +29,7 @@ _FINEST = 1e-2  # smallest step in ln v
 _THICK = 5.0  # film thickness over h_rms that counts as thick
 _GROWTH = np.log(4.0)  # largest change of ln(film) in an extrapolation to the next speed
 _START_POINTS = 101  # points of the dry contact that is the start
-_DECADES = 12  # decades below a speed in which a speed that can be reached from rest is searched
+_DECADES = 12  # decades below a speed that are searched for one solvable from rest
 
 
 def dry_state(problem: Problem, contact: LineContact, separation: Separation, load: float) -> State:

@@ -67,7 +67,7 @@ def _faces(faces: bytes, sectors: int) -> Faces:
 
 
 class PointProblem(NamedTuple):
-    """Quantities independent of speed, with units: a, for gaps g = a^2/2R, for pressures P."""
+    """Speed-independent quantities: lengths in units of a, gaps of g = a^2/2R, pressures of P."""
 
     mesh: PolarMesh
     factors: FlowFactors

@@ -32,7 +32,7 @@ def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
     rows, columns = maps.shape[-2:]
     power, square = np.zeros((rows // 2 + 1, columns // 2 + 1)), 0.0
     lines = np.empty((rows, columns // 2 + 1), complex)
-    for heights in maps:  # transform maps one by one, window blocks of rows: maps are large
+    for heights in maps:  # one map at a time, windowed in blocks of rows, to save memory
         for first in range(0, rows, _BLOCK):
             block = slice(first, first + _BLOCK)
             windowed = heights[block] * window(columns)
