@@ -50,7 +50,7 @@ class Factors(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FlowFactors:
-    """Flow and friction factors of one surface over mean separation; 1 or 0 if smooth.
+    """Flow and friction factors of one surface over mean separation; constant if smooth.
 
     Made by `flow_factors` or `smooth_factors`.
 

@@ -137,7 +137,7 @@ def _prefix(unit: str, si_unit: str) -> float | None:
     return None
 
 
-# common units of instruments, and SI units to which a mismatch is obvious without pint
+# common units of instruments, and SI units for which a mismatch is obvious without pint
 _EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s|Hz)")
 _OF_TIME = frozenset(("Hz", "1/s", "rad/s"))  # targets to which a frequency may be converted
 _ASKED = frozenset(
