@@ -32,7 +32,7 @@ class AdhesiveGrowth(NamedTuple):
     work_of_adhesion: float
 
     def __call__(self, solid: np.ndarray, whole: np.ndarray, area: np.ndarray) -> np.ndarray:
-        """Return the contact area with adhesion from that without.
+        """Return the contact area with adhesion, given the area without adhesion.
 
         Parameters
         ----------

@@ -162,7 +162,7 @@ def segment_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.
 
 
 class ZeroApart(NamedTuple):
-    """Friction result whose errors exclude the stated zero, which is an input of its own."""
+    """Friction result whose standard errors exclude the stated zero; the zero is an input."""
 
     friction: xr.Dataset
     known: Mapping[str, Known]

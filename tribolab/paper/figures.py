@@ -264,7 +264,7 @@ BY_NAME = {figure.name: figure for figure in FIGURES}
 
 @dataclass(frozen=True)
 class DrawTask:
-    """A figure that is to be drawn."""
+    """Figure to draw, with the data that it needs."""
 
     name: str
     data: PaperData

@@ -138,7 +138,7 @@ def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> 
         "surface": task.surface,
         "normal_force_N": force,
         "printed_shear_stress_Pa": printed,
-        # solid friction over the measured speeds
+        # stress with the corrected area that fits the same solid friction best
         "printed_with_corrected_area_Pa": printed * (plain @ corrected) / (corrected @ corrected),
         "shear_stress_Pa": fit.shear_stress,
         "shear_stress_low_Pa": fit.shear_stress - fit.half_interval,

@@ -1,4 +1,4 @@
-"""Units per time or length: SI does not distinguish cycles and radians, conversion must.
+"""Units per time or length. SI does not distinguish cycles and radians, but conversion must.
 
 ``1/min`` of a rotation speed counts turns, ``1/s`` of a shear rate counts nothing, and ``1/s`` of
 an angular frequency is ambiguous. The quantity defines the meaning of a bare reciprocal

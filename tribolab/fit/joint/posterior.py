@@ -1,4 +1,4 @@
-"""Posterior of a joint fit: normal distributions, one per size of shared errors, weighted."""
+"""Posterior of a joint fit: normals for all sizes of the shared errors, weighted by evidence."""
 
 from __future__ import annotations
 
