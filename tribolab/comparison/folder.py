@@ -102,7 +102,7 @@ class Folder:
 
     def table(self, name: str) -> pd.DataFrame | None:
         """Return a table by its name; None if the folder does not contain it."""
-        # imported late: pandas loads slowly
+        # imported late for a fast start
         from tribolab.report import tables
 
         path = self.path / "tables" / f"{name}.csv"

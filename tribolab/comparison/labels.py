@@ -38,7 +38,7 @@ def labelled_segments(place: str | Path) -> pd.DataFrame:
     path = Path(place)
     campaign: Campaign | None = None
     if path.is_file() or (path / "campaign.toml").is_file():
-        # imported late: pandas loads slowly
+        # imported late for a fast start
         from tribolab.campaign.settings.load import load_campaign
 
         campaign = load_campaign(path)

@@ -89,7 +89,7 @@ def _find_bracketed(
     close: float,
 ) -> Root:
     """Return the root of each function between two ends, by Chandrupatla's method."""
-    # imported late: scipy takes long to load
+    # imported late: scipy loads slowly
     from scipy.optimize.elementwise import find_root
 
     root = find_root(

@@ -83,7 +83,7 @@ def sliding_mode(
     band: xr.Dataset | None = None,
     name: str = "the contact",
 ) -> SlidingMode:
-    """Return whether sliding is controlled by adhesion, from the evidence on both sides.
+    """Return the sliding mode: the verdict on control by adhesion, with the evidence on both sides.
 
     Parameters
     ----------

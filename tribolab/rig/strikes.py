@@ -242,7 +242,7 @@ def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
-    """Return the speeds sampled fast enough to show spectral lines; an error if there are none."""
+    """Raise an error unless enough speeds are sampled fast enough to show spectral lines."""
     interval = _interval(run)
     speeds = []
     for stroke, speed in enumerate(run.segments["sliding_speed_m_s"]):

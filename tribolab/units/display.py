@@ -68,7 +68,7 @@ def add_units(data: xr.Dataset | xr.DataArray) -> str:
 
 
 def _is_ours(data: xr.Dataset | xr.DataArray) -> bool:
-    # imported late: xarray's formatting loads slowly
+    # imported late for a fast start
     from tribolab.units.quantities import QUANTITIES
 
     own: Any = data.data_vars if hasattr(data, "data_vars") else {data.name: data}

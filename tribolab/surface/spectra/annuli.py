@@ -75,7 +75,7 @@ def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaw
 def merge_annuli(
     measured: Annuli, behind: Annuli, relative: np.ndarray
 ) -> tuple[Annuli, np.ndarray]:
-    """Return annuli merged with their neighbours until each is accurate enough.
+    """Return annuli merged until each is accurate enough, and their relative standard errors.
 
     Parameters
     ----------
