@@ -120,7 +120,7 @@ def test_a_campaign_runs_its_own_python_only_if_it_is_trusted(campaign):
     marker = campaign.parent / "it_ran"
     reader = campaign.parent / "my_reader.py"
     reader.write_text(f"open({str(marker)!r}, 'w').close()\n{READER}")
-    with pytest.raises(ConfigError, match="'my_reader.py' is a program of the campaign's own"):
+    with pytest.raises(ConfigError, match="'my_reader.py' is a Python program that belongs"):
         tl.run_campaign(campaign, jobs=1)
     done = CliRunner().invoke(cli.app, ["run", str(campaign), "--jobs", "1", "--quiet"])
     assert done.exit_code == 2
