@@ -138,8 +138,8 @@ def test_info_says_that_the_companion_was_found_and_how_its_clock_was_matched(tm
     pair, file = files(tmp_path, "2026-03-02T09:12:31")
     text = CliRunner().invoke(app, ["info", str(file)]).output
     assert "companion log: found (linear_slider_motion)" in text
-    assert "told by the starts of motion: " in text
-    assert "told by a fit by distance, speed and acceleration: " in text
+    assert "from the starts of motion: " in text
+    assert "from classes of velocity: " in text
     stated = text.split("clock shift: ")[1].split()
     assert abs(float(stated[0]) - pair.shift) < 3 * float(stated[4])
     file.with_name(file.name.replace("_force", "_motion")).unlink()
