@@ -144,7 +144,7 @@ def test_info_says_that_the_companion_was_found_and_how_its_clock_was_matched(tm
     assert abs(float(stated[0]) - pair.shift) < 3 * float(stated[4])
     file.with_name(file.name.replace("_force", "_motion")).unlink()
     text = CliRunner().invoke(app, ["info", str(file)]).output
-    assert "companion log: a_31N_01_motion.csv is not there" in text
+    assert "companion log: a_31N_01_motion.csv does not exist" in text
 
 
 def test_a_companion_of_another_day_is_refused_until_the_shift_is_stated(tmp_path):

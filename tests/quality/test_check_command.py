@@ -272,7 +272,7 @@ def test_info_on_a_long_file_takes_an_excerpt_in_which_each_range_is_nearly_the_
     head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N],V [mm/s]\n"
     known.write_text(head + "".join(lines))
     part = file_info.file_lines(known)
-    assert "estimated" in part[2] and "companion log: k_motion.csv is not there" in part[-1]
+    assert "estimated" in part[2] and "companion log: k_motion.csv does not exist" in part[-1]
     (tmp_path / "k_motion.csv").write_text("no numbers\n")
     part = file_info.file_lines(known)
     assert "estimated" not in part[2] and "companion log: refused" in "".join(part)
