@@ -6,9 +6,10 @@ import pytest
 
 from tribolab.records.parts import CurveOutcome, RunOutcome
 from tribolab.records.runs.run_record import RunRecord
+from tribolab.records.runs.running_in_record import RunningIn
 from tribolab.report.document.document import state_of, verdict
 from tribolab.report.page.doubts import doubts
-from tribolab.report.page.key_numbers import friction_numbers
+from tribolab.report.page.key_numbers import friction_numbers, settled_numbers
 from tribolab.report.page.run_list import listed_runs
 from tribolab.report.page_figures.curves import curve_label
 from tribolab.report.page_figures.points import RunPoint, of_curve, run_points
@@ -250,4 +251,19 @@ def test_repeats_that_leave_their_mean_uncertain_make_a_campaign_suspect():
     for point in document["curves"][0]["points"]:
         point["friction_coefficient_U95"] = 0.3 * point["friction_coefficient"]
     (doubt,) = (doubt for doubt in doubts(document) if "scatter" in doubt.text)
-    assert doubt.text.endswith("uncertain: Sb-R, glycerol, 31 N (± 30 %)")
+    assert doubt.text.endswith("exceeds 25 % of it: Sb-R, glycerol, 31 N")
+
+
+def test_steady_friction_has_the_mean_without_a_repeat_that_contradicts_the_others():
+    settled = {"start_m": 1.0, "end_m": 5.0, "sliding_speed_m_s": 0.1, "verdict": ""}
+    settled |= {name: None for name in RunningIn.__dataclass_fields__ if name not in settled}
+    runs = []
+    for name, mu in (("a", 0.50), ("b", 0.50), ("c", 0.62)):
+        level = {"steady_friction_coefficient": mu, "steady_friction_coefficient_U95": 0.004}
+        runs.append(run(name, 5.0) | {"running_in": [settled | level]})
+    means = [row.cells[:2] for row in settled_numbers({"runs": runs}).rows[3:]]
+    assert means == [("mean of 3 repeats", "0.54 ± 0.17")]
+    runs[2]["checks"] = [CHECK | {"check": "repeats", "status": "suspect"}]
+    means = [row.cells[:2] for row in settled_numbers({"runs": runs}).rows[3:]]
+    # the U95 of equal repeats is that of their own means
+    assert means[1] == ("mean of 2 repeats, without c", "0.500 ± 0.003")

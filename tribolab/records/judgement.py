@@ -48,6 +48,11 @@ def is_bad(run: Mapping[str, Any]) -> bool:
     return run["status"] != "done" or run["quality"] in BAD
 
 
+def is_odd(run: Mapping[str, Any]) -> bool:
+    """Return whether a run contradicts its repeats, and nobody decided on it."""
+    return any(row["check"] == "repeats" and not row["decision"] for row in run["checks"])
+
+
 def has_unknown_zero(checks: Iterable[Mapping[str, Any]]) -> bool:
     """Return whether the zero of the friction force is in doubt: then U95 does not include it."""
     return any(row["check"] == "zero_reference" and row["status"] == "suspect" for row in checks)

@@ -65,9 +65,10 @@ def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
 def uncertain_words(conditions: Sequence[tuple[float, str]]) -> str:
     """Return a doubt about conditions, each with its result of `uncertain_mean` and its name."""
     worst = sorted(conditions, reverse=True)
-    named = "; ".join(f"{name} (± {percent(share)})" for share, name in worst[:_MAX_NAMED])
+    named = "; ".join(name for _, name in worst[:_MAX_NAMED])
     more = f"; and {len(worst) - _MAX_NAMED} more" if len(worst) > _MAX_NAMED else ""
-    return f"repeats scatter so much that their mean is uncertain: {named}{more}"
+    limit = percent(_UNCERTAIN)
+    return f"repeats scatter so much that U95 of their mean exceeds {limit} of it: {named}{more}"
 
 
 def verdict_of(

@@ -67,8 +67,8 @@ def profiles(
         )
     return FigureSpec(
         title="Profiles",
-        note="The first scan of each surface after form removal (of a map the middle row), one "
-        "above another; each column shows its lowest and highest point.",
+        note="The first scan of each surface after form removal (of a map the middle row); the "
+        "profiles are shifted in height.",
         panels=(Panel(Axis("position", "mm"), Axis("height", "µm")),),
         series=tuple(series),
     )

@@ -12,7 +12,7 @@ from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import load_text
 from tribolab.figures.spec import KeyRow, KeyTable
 from tribolab.friction.points.mean_of_repeats import mean_of_repeats
-from tribolab.records.judgement import has_unknown_zero, is_bad
+from tribolab.records.judgement import has_unknown_zero, is_bad, is_odd
 from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
 from tribolab.records.runs.running_in_record import RunningIn, length_text
@@ -91,10 +91,12 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
 def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
     """Return running-in and steady friction of each run at one speed; None without such runs.
 
-    The last rows are the means of repeats, with the U95 of the scatter between them.
+    The last rows are the means of repeats, with the U95 of the scatter between them, also without
+    those that contradict the others.
     """
     rows = []
-    repeats: dict[tuple[str, str, float | None, str], list[float]] = {}
+    repeats: dict[tuple[str, str, float | None, str], dict[str, tuple[float, float]]] = {}
+    odd = {run["name"] for run in document["runs"] if is_odd(run)}
     for run in document["runs"]:
         if len(run["running_in"]) != 1:
             continue
@@ -112,15 +114,21 @@ def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
         condition = run["surface"], run["medium"], run["nominal_normal_force_N"]
         rows.append(KeyRow(tuple(cells), *condition))
         if finished and not is_bad(run):
-            level = float(settled["steady_friction_coefficient"])
-            repeats.setdefault((*condition, cells[-1]), []).append(level)
+            level = settled["steady_friction_coefficient"]
+            own = settled["steady_friction_coefficient_U95"] or 0.0
+            repeats.setdefault((*condition, cells[-1]), {})[run["name"]] = level, own
     for (surface, medium, load, speed), levels in repeats.items():
-        if len(levels) > 1:
-            found = mean_of_repeats(np.array(levels), np.full(len(levels), np.nan))
-            name = f"mean of {len(levels)} repeats"
-            cells = [name, error_text(found.mean, found.u95), "", "", "", speed]
-            rows.append(KeyRow(tuple(cells), surface, medium, load))
-    heads = ("Run", "Steady µ", "Whole-run mean", "Running-in distance", "Verdict", "Speed")
+        without = ", ".join(name for name in levels if name in odd)
+        agreeing = {name: known for name, known in levels.items() if name not in odd}
+        for used, end in ((levels, ""), (agreeing, f", without {without}")):
+            if len(used) > 1 and (without or used is levels):
+                values, own = np.array([*used.values()]).T
+                found = mean_of_repeats(values, np.full(len(used), np.nan))
+                u95 = max(found.u95, float(np.linalg.norm(own)) / len(used))  # of equal repeats
+                name = f"mean of {len(used)} repeats{end}"
+                cells = [name, error_text(found.mean, u95), "", "", "", speed]
+                rows.append(KeyRow(tuple(cells), surface, medium, load))
+    heads = ("Run", "Steady µ", "Whole-run mean", "Running-in distance", "State", "Speed")
     return KeyTable(heads, tuple(rows)) if rows else None
 
 

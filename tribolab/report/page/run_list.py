@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.core.wording import MINUS
-from tribolab.records.judgement import check_words, is_bad, status_word, why
+from tribolab.records.judgement import check_words, is_bad, is_odd, status_word, why
 from tribolab.records.wording import UNITS, error_text
 from tribolab.report.page.sparkline import spark_path
 from tribolab.report.page_figures.points import MAX_SPEED_RATIO, RunPoint, at_speed
@@ -102,8 +102,7 @@ def _reason(run: Mapping[str, Any], common: Collection[str]) -> str:
 def _state(run: Mapping[str, Any]) -> str:
     """Return the state of a run in words; "odd" if it contradicts its repeats."""
     word = status_word(run)
-    odd = any(row["check"] == "repeats" and not row["decision"] for row in run["checks"])
-    return _ODD if odd and word in ("done", "suspect") else word
+    return _ODD if is_odd(run) and word in ("done", "suspect") else word
 
 
 def _rank(row: ListedRun, off: Sequence[float | None]) -> tuple[int, float]:

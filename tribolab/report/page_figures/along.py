@@ -67,6 +67,7 @@ _OVER = (
     ("cycles", Axis("cycle"), "number", ("start_number", "stop_number")),
 )
 _INK: Arguments = {"colour": BLACK}
+_STEADY = "steady"  # label of the lines at the steady value, the last in the legend
 _MU = Axis("friction coefficient µ")
 
 
@@ -97,7 +98,7 @@ def along_figures(runs: Sequence[Along], count: int) -> list[FigureSpec]:
                 note=f"{_note(runs)}{which}",
                 alt=f"Friction coefficient of {many(len(runs), 'run')} over {axis.label}.",
                 panels=(Panel(axis, _MU), *([Panel(axis, Axis("wear", "µm"))] * wear)),
-                series=tuple(series),
+                series=tuple(sorted(series, key=lambda drawn: drawn.label == _STEADY)),
                 width="whole",
                 height=520 if wear else 430,
             )
@@ -146,7 +147,7 @@ def _series(run: Along, runs: Sequence[Along], column: str, ends: tuple[str, str
     if None not in (start, stop, level):
         words = f"{outcome.name}: steady µ = {error_text(level, error)}"
         drawn.append(
-            Series("steady", [start, stop], [level] * 2, "dashed", hover=(words,), **labels | _INK)
+            Series(_STEADY, [start, stop], [level] * 2, "dashed", hover=(words,), **labels | _INK)
         )
     wear = [number_of(row, "wear_depth_m") for row in rows]
     if any(depth is not None for depth in wear):

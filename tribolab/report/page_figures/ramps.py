@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.core.wording import many, number
+from tribolab.core.wording import force_text, many, number
 from tribolab.figures.signals import LOOKED_AT, main_signal
 from tribolab.figures.spec import Axis, FigureSpec, KeyRow, KeyTable, Panel, Series
 from tribolab.records.parts import BAD, RunOutcome
@@ -18,7 +18,7 @@ _SPEEDS = "sliding_velocity", "set_speed"
 _BINS_PER_DECADE = 12
 _MIN_SAMPLES = 5  # smallest number of samples of a bin
 _MIN_DECADES = 0.3
-_HEADS = "Ramp", "Speeds", "Highest µ", "Lowest µ"
+_HEADS = "Ramp", "Mean load", "Speeds", "Highest µ", "Lowest µ"
 _SMOOTHED = 50  # intervals in which the sign of acceleration is determined
 
 
@@ -37,11 +37,11 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
     folder
         The results folder with their data files.
     """
-    series = [
-        drawn
-        for place, run in enumerate(runs)
-        for drawn in _legs(run, place, folder / run.data_file)
+    legs = [
+        leg for place, run in enumerate(runs) for leg in _legs(run, place, folder / run.data_file)
     ]
+    series = [drawn for drawn, _ in legs]
+    both = any(drawn.open for drawn in series) and not all(drawn.open for drawn in series)
     if not series:
         return []
     return [
@@ -49,8 +49,9 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
             id="ramps",
             section="view-ramp",
             title="Friction vs. speed, ramps",
-            note="Means and standard deviations over small ranges of speed. Filled: the speed "
-            "rises; open: it falls. The zero of the friction force is not removed.",
+            note="Means and standard deviations over small ranges of speed."
+            + " Filled: the speed rises; open: it falls." * both
+            + " The zero of the friction force is not removed.",
             alt=f"Friction over the instantaneous speed of {many(len(runs), 'run')}.",
             panels=(
                 Panel(Axis("sliding speed v", "m/s", log=True), Axis("friction coefficient µ")),
@@ -58,20 +59,21 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
             series=tuple(series),
             width="whole",
             height=430,
-            numbers=KeyTable(_HEADS, tuple(map(_extremes, series))),
+            numbers=KeyTable(_HEADS, tuple(_extremes(*leg) for leg in legs)),
         ),
     ]
 
 
-def _extremes(leg: Series) -> KeyRow:
-    """Return the range of speed of a ramp, its highest and its lowest friction."""
+def _extremes(leg: Series, load: float | None) -> KeyRow:
+    """Return load [N] and range of speed of a ramp, its highest and its lowest friction."""
     high, low = int(np.argmax(leg.y)), int(np.argmin(leg.y))
-    cells = [leg.label, f"{plain_speed(min(leg.x))} to {plain_speed(max(leg.x))}"]
+    cells = [leg.label, force_text(load), f"{plain_speed(min(leg.x))} to {plain_speed(max(leg.x))}"]
     cells += [f"{number(leg.y[place])} at {plain_speed(leg.x[place])}" for place in (high, low)]
     return KeyRow(tuple(cells), leg.surface, leg.medium)
 
 
-def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:
+def _legs(run: RunOutcome, place: int, file: Path) -> list[tuple[Series, float | None]]:
+    """Return the rising and the falling part of a run, each with its mean load [N]."""
     # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
 
@@ -96,24 +98,24 @@ def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:
     for leg, words in ((rising, "rising"), (~rising, "falling")):
         x, mean, spread = _binned(speed[known & leg], mu[known & leg], edges)
         if x:
-            drawn.append(
-                Series(
-                    f"{run.name}, {words}",
-                    x,
-                    mean,
-                    style="points",
-                    colour=place,
-                    error=spread,
-                    pale=True,
-                    surface=run.surface,
-                    medium=run.medium,
-                    load=None,
-                    runs=(run.name,),
-                    link=(run.name,),
-                    open=words == "falling",
-                    joined=True,
-                )
+            load = signals.get("normal_force")
+            force = np.nan if load is None else float(np.abs(load.values)[known & leg].mean())
+            series = Series(
+                f"{run.name}, {words}",
+                x,
+                mean,
+                style="points",
+                colour=place,
+                error=spread,
+                pale=True,
+                surface=run.surface,
+                medium=run.medium,
+                runs=(run.name,),
+                link=(run.name,),
+                open=words == "falling",
+                joined=True,
             )
+            drawn.append((series, force if np.isfinite(force) else None))
     return drawn
 
 
