@@ -19,7 +19,7 @@ from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.plan import PlannedRun, planned_runs
 from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.core.errors import ReadError
-from tribolab.friction.segments.plateaus import running_median
+from tribolab.friction.segments.noise import running_median
 from tribolab.friction.segments.slopes import block_slopes, position_noise, without_resets
 from tribolab.reading.netcdf.netcdf import read_groups
 from tribolab.reading.runs.read_run import read_run

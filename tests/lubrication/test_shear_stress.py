@@ -8,8 +8,9 @@ from contact_cases import CONTACT, reference_psd, target
 from scipy import stats
 
 from tribolab.core.errors import AnalysisError, UnitError
+from tribolab.fit.fitted_points import runs_p_value
 from tribolab.fit.residual_error import residual_error
-from tribolab.fit.shear_stress import fit_shear_stress, runs_p_value
+from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.studies import xu2026

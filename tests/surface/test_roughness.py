@@ -9,7 +9,8 @@ from tribolab.app.info.file_info import file_lines
 from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.studies import xu2026
 from tribolab.surface.filters import gaussian_filter, transmission
-from tribolab.surface.roughness import roughness_parameters, spectral_roughness
+from tribolab.surface.roughness import roughness_parameters
+from tribolab.surface.spectrum_roughness import spectral_roughness
 
 PITCH = 0.5e-6
 X = PITCH * np.arange(40_000)

@@ -12,14 +12,13 @@ from scipy import special
 from scipy.optimize import least_squares
 
 from tribolab.contact.geometry import Contact
-from tribolab.core.errors import AnalysisError, Cure, shown
-from tribolab.fit import limits
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.fit_settings import FitSettings, merge_old_settings
+from tribolab.fit.fitted_points import over_speed, points, regression, runs_p_value, valid_range
 from tribolab.fit.input_error import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress_fit import ShearStressFit
-from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.parameters import (
     Interface,
     Liquid,
@@ -30,7 +29,7 @@ from tribolab.lubrication.parameters import (
 )
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
-from tribolab.units.conversion import positive, to_si
+from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
 _MIN_CONTACT_AREA = 1e-19  # contact area [m2] below which the bodies do not touch
@@ -122,8 +121,8 @@ def fit_shear_stress(
     method = {"method": "auto"} if contact.is_round and solver is None else {}
     base = parameters_of(liquid, interface or 0.0, solver, **{**method, **model, "shear_stress": 0})
     eta, force = base.liquid.viscosity, positive(load, contact.load_unit, "load")
-    measured = _over_speed(measured)
-    speed, mu, error, used, source = _points(measured, settings.speed_range, 2 + len(free))
+    measured = over_speed(measured)
+    speed, mu, error, used, source = points(measured, settings.speed_range, 2 + len(free))
     shared = shared_errors(measured, speed) if source != "scatter" else np.zeros((0, speed.size))
     errors = PointErrors(error, shared)
 
@@ -148,7 +147,7 @@ def fit_shear_stress(
         model_curve = computed(best)
     fluid, area = _parts(model_curve)
     area = np.where(area > least, area, 0.0)
-    stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
+    stress = regression(mu[used], fluid[used], area[used], errors.at(used))
     dense = model_curve if curve is None or free else curve
     moved = _model_errors(dense, stress, speed, settings.abscissa_error, inputs, free)
     if moved.size:
@@ -158,7 +157,7 @@ def fit_shear_stress(
             model_curve = computed(best)
             fluid, area = _parts(model_curve)
             area = np.where(area > least, area, 0.0)
-        stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
+        stress = regression(mu[used], fluid[used], area[used], errors.at(used))
     residual = mu - fluid - stress * area
     freedom = int(used.sum()) - 1 - len(free)
     if source == "scatter":
@@ -198,7 +197,7 @@ def fit_shear_stress(
         runs_p_value=runs_p_value(residual[used]),
         common_error=common,
         common_freedom=float(settings.common_freedom),
-        valid_speed_range=_valid_range(speed[used], mu[used], fluid[used], area[used], known),
+        valid_speed_range=valid_range(speed[used], mu[used], fluid[used], area[used], known),
         area_enhancement=float(settings.area_enhancement),
         area_enhancement_error=float(settings.area_enhancement_error),
         error_from=source,
@@ -210,92 +209,9 @@ def fit_shear_stress(
     )
 
 
-def runs_p_value(residual: np.ndarray) -> float:
-    """Return the probability of at most so many sign changes if the signs are in random order.
-
-    Examples
-    --------
-    >>> runs_p_value(np.array([1.0, 2, 1, 3, -1, -2, -1, -3]))  # 2 of the 70 orders
-    0.02857142857142857
-    """
-    sign = residual[residual != 0] > 0
-    plus, minus = int(sign.sum()), int((~sign).sum())
-    if plus == 0 or minus == 0:
-        return 1.0  # residuals of one sign have only one order
-    seen = 1 + int(np.count_nonzero(sign[1:] != sign[:-1]))
-    ways = 0.0
-    for runs in range(2, seen + 1):
-        half = runs // 2
-        if runs % 2 == 0:
-            ways += float(2 * special.comb(plus - 1, half - 1) * special.comb(minus - 1, half - 1))
-        else:
-            ways += float(special.comb(plus - 1, half) * special.comb(minus - 1, half - 1))
-            ways += float(special.comb(plus - 1, half - 1) * special.comb(minus - 1, half))
-    return float(ways / special.comb(plus + minus, plus))
-
-
-def _over_speed(measured: xr.Dataset) -> xr.Dataset:
-    """Return a measured curve in order of speed; segments are averaged to a curve first."""
-    given = measured.get("friction_coefficient")
-    if given is not None and given.dims == ("segment",):
-        measured = measured_stribeck_curve([measured])
-    elif given is None or given.dims != ("sliding_speed",):
-        over = "is not in it"
-        cure = (
-            "tl.measured_stribeck_curve makes such a curve from the results of friction_coefficient"
-        )
-        if given is not None:
-            over = f"is over {', '.join(map(repr, given.dims)) or 'none'}"
-            if "sliding_speed" in given.dims:
-                cure = "tl.fit.fit_shear_stresses fits every curve"
-        raise AnalysisError(
-            f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}",
-            cure=Cure(notebook=cure),
-        )
-    return measured.sortby("sliding_speed")
-
-
-def _points(
-    measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
-    """Return speeds, friction, errors, mask of fitted points, and the source of the errors."""
-    speed = measured["sliding_speed"].values.astype(float)
-    mu = measured["friction_coefficient"].values.astype(float)
-    if speed_range is None:
-        low, high = 0.0, np.inf
-    else:
-        low, high = (to_si(end, "m/s", name="speed_range") for end in speed_range)
-    used = np.isfinite(mu) & (speed > 0) & (speed >= low) & (speed <= high)
-    if used.sum() < least:
-        raise AnalysisError(
-            f"measured: {used.sum()} points from {low:g} to {high:g} m/s; at least {least} are "
-            "wanted to fit and still see a misfit"
-        )
-    keep = speed > 0
-    for source in ("sem", "std"):
-        name = f"friction_coefficient_{source}"
-        if name not in measured:
-            continue
-        error = measured[name].values.astype(float)
-        if np.any(error < 0):
-            raise AnalysisError(
-                f"measured: '{shown(name)}' is negative at {speed[error < 0][0]:g} m/s"
-            )
-        known = np.isfinite(error) & (error > 0)
-        if np.any(known & used):
-            error = np.where(known, error, np.median(error[known & used]))
-            return speed[keep], mu[keep], error[keep], used[keep], source
-    return speed[keep], mu[keep], np.ones(keep.sum()), used[keep], "scatter"
-
-
 def _parts(curve: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Return the fluid friction of a curve, and the factor of sigma_f in the solid friction."""
     return curve["friction_coefficient"].values, curve["friction_per_shear_stress"].values
-
-
-def _regression(mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, errors: PointErrors) -> float:
-    solid = errors.whitened(area)
-    return float(solid @ errors.whitened(mu - fluid) / (solid @ solid))
 
 
 def _slope(curve: xr.Dataset, stress: float, speed: np.ndarray) -> np.ndarray:
@@ -330,7 +246,7 @@ def _fit_free(
 
     def residual(extra: np.ndarray) -> np.ndarray:
         fluid, area = (part[used] for part in _parts(computed(extra)))
-        return errors.whitened(mu - fluid - _regression(mu, fluid, area, errors) * area)
+        return errors.whitened(mu - fluid - regression(mu, fluid, area, errors) * area)
 
     steps = np.full(start.size, _LN_STEP)
     fit = least_squares(residual, start, diff_step=steps, x_scale=1.0, xtol=1e-6, ftol=1e-8)
@@ -361,29 +277,3 @@ def _covariance(weighted: np.ndarray, extra: np.ndarray) -> np.ndarray:
     inverse = np.linalg.pinv(weighted / size)
     scale = np.append(1.0, extra) / size
     return inverse @ inverse.T * np.outer(scale, scale)
-
-
-def _valid_range(
-    speed: np.ndarray,
-    mu: np.ndarray,
-    fluid: np.ndarray,
-    area: np.ndarray,
-    errors: PointErrors,
-) -> tuple[float, float]:
-    """Return the widest range of neighbouring speeds (in ln v) that one sigma_f describes."""
-    best, widest = (np.nan, np.nan), 0.0
-    for first in range(speed.size):
-        for stop in range(first + limits.MIN_SPEEDS_OF_RANGE.value, speed.size + 1):
-            part = slice(first, stop)
-            width = np.log(speed[stop - 1] / speed[first])
-            if width <= widest or not np.any(area[part] > 0):
-                continue
-            known = errors.at(part)
-            stress = _regression(mu[part], fluid[part], area[part], known)
-            miss = known.whitened(mu[part] - fluid[part] - stress * area[part])
-            if (
-                special.chdtrc(stop - first - 1, float(miss @ miss))
-                > limits.MIN_CHANCE_OF_MISFIT.value
-            ):
-                best, widest = (float(speed[first]), float(speed[stop - 1])), width
-    return best

@@ -22,12 +22,12 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-from scipy import special
 
 from tribolab.core.coverage import NORMAL
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 from tribolab.friction.mean_error.course import line_through
+from tribolab.friction.mean_error.freedom import StandardError, coverage_of, with_freedom
 from tribolab.friction.mean_error.level import levels_of, without_lines
 from tribolab.friction.run_out import (
     MAX_COARSE_TURNS,
@@ -43,9 +43,6 @@ MOST_STRETCHES = int(limits.BLOCKS.value)
 _MIN_STRETCHES_OF_TURN = 40  # fewest intervals for which waves of a turning rig are fitted
 # number of frequencies of the spectrum with which a wave of a turning rig is compared
 _SPECTRUM_FREQUENCIES = 1024
-# grid of degrees of freedom to invert u95/sem
-_DOF = np.geomspace(1.0, 1e4, 8000)
-_WIDTHS = special.stdtrit(_DOF, 0.975)
 
 
 class Estimate(NamedTuple):
@@ -86,41 +83,6 @@ _NOTHING = Estimate(
     trend_change=np.nan,
     trend_p_value=np.nan,
 )
-
-
-class StandardError(NamedTuple):
-    """A standard error and its degrees of freedom, which together make U95."""
-
-    sem: np.ndarray
-    dof: np.ndarray
-
-
-def with_freedom(sem: np.ndarray, u95: np.ndarray) -> StandardError:
-    """Return the standard error and degrees of freedom that give an expanded uncertainty.
-
-    Parameters
-    ----------
-    sem, u95
-        Arrays of equal shape and unit.
-
-    Returns
-    -------
-    StandardError
-        ``t_0.975(dof) sem = u95``. The standard error is changed if no degrees of freedom fit: to
-        ``u95/1.96`` (dof infinite) or ``u95/12.7`` (dof 1).
-
-    Examples
-    --------
-    >>> found = with_freedom(np.array([1.0, 1.0]), np.array([2.776, 1.0]))
-    >>> found.dof.round(2).tolist(), found.sem.round(2).tolist()
-    ([4.0, inf], [1.0, 0.51])
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(sem > 0, u95 / sem, np.inf)
-    dof = np.interp(-ratio, -_WIDTHS, _DOF)
-    dof = np.where(ratio <= _WIDTHS[-1], np.inf, dof)
-    width = np.where(np.isinf(dof), NORMAL, special.stdtrit(np.minimum(dof, 1e9), 0.975))
-    return StandardError(np.where(np.isfinite(u95), u95 / width, np.nan), dof)
 
 
 def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
@@ -284,11 +246,6 @@ def _estimate_errors(records: list[_Record]) -> list[Estimate]:
             )
         )
     return out
-
-
-def coverage_of(dof: float) -> float:
-    """Return U95 over the standard error, of a mean with some degrees of freedom."""
-    return NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975))
 
 
 def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from tribolab.core.errors import AnalysisError, shown
 from tribolab.core.provenance import join_sources, made
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
+from tribolab.friction.mean_error.freedom import with_freedom
 from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_between_runs
 from tribolab.friction.points.strokes import (
     Observations,
@@ -18,7 +19,6 @@ from tribolab.friction.points.strokes import (
     means_of_run,
     observations_of,
 )
-from tribolab.friction.statistics import with_freedom
 from tribolab.units.stamping import stamp
 
 _COLUMNS = (

@@ -163,7 +163,7 @@ def self_affine_psd(
 
     Examples
     --------
-    >>> from tribolab.surface.roughness import spectral_roughness
+    >>> from tribolab.surface.spectrum_roughness import spectral_roughness
     >>> psd = self_affine_psd("2 um", 0.8, rolloff=1e4, low=1e3, high=1e9)
     >>> f"{spectral_roughness(psd).rms_roughness[-1].item():.4g}"
     '2e-06'

@@ -22,8 +22,9 @@ from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.limits import MAX_EXTRAPOLATED_SLOPE, MIN_SHARE_OF_HEIGHT
 from tribolab.surface.moments import band, rms_roughness, rms_slope
-from tribolab.surface.roughness import primary_roughness, roughness_parameters, spectral_roughness
+from tribolab.surface.roughness import primary_roughness, roughness_parameters
 from tribolab.surface.spectra.psd import psd_1d, psd_2d
+from tribolab.surface.spectrum_roughness import spectral_roughness
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -19,16 +19,11 @@ from tribolab.core.untyped import Json
 from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import compute_both
+from tribolab.friction.mean_error.freedom import with_freedom
 from tribolab.friction.run_out import turn_remark, turned
 from tribolab.friction.segments.limits import MAX_LOST_CONTACT
 from tribolab.friction.segments.stretches import name_of
-from tribolab.friction.statistics import (
-    Estimate,
-    estimates_of,
-    undetermined_remark,
-    wander_remark,
-    with_freedom,
-)
+from tribolab.friction.statistics import Estimate, estimates_of, undetermined_remark, wander_remark
 from tribolab.friction.zero import limits
 from tribolab.friction.zero.load_reading import WIDTH_OVER_SIGMA, load_reading
 from tribolab.friction.zero.of_run import Settings, zero_of_run

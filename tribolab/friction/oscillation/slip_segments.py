@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 
 from tribolab.arrays.broadcasting import of_runs
-from tribolab.arrays.chunks import one_by_one
-from tribolab.arrays.medians import median_of_known
-from tribolab.core.errors import AnalysisError
-from tribolab.friction.coefficient.coefficient import belong, friction_signal, trimmed_slices
+from tribolab.friction.coefficient.coefficient import belong, friction_signal
 from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.critical_stiffness import STIFFNESS, critical_stiffness
 from tribolab.friction.oscillation.examine import Examined, examine_record
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.rig_waves import RigMotion, RigWave, motion_of, rig_wave
+from tribolab.friction.oscillation.signals import SegmentSignal, is_clipped, signals
 from tribolab.friction.oscillation.slip_table import (
     class_of,
     class_table,
@@ -31,11 +26,7 @@ from tribolab.friction.oscillation.slip_table import (
     spectra_table,
 )
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
-from tribolab.friction.segments.stretches import name_of
-from tribolab.friction.zero.rests import unloaded_rests
 from tribolab.units.stamping import stamp
-
-_SIGN_SAMPLES = 100_000  # samples of a segment that determine its sign
 
 # for a run with forces only, these are in N and prefixed with "force_"
 _IN_SIGNAL_UNIT = (
@@ -67,16 +58,6 @@ _REVERSED = (
     "dialect "
     "if it is so"
 )
-
-
-class SegmentSignal(NamedTuple):
-    """Friction of one segment, positive as resistance, and the sensor signal."""
-
-    part: slice
-    time: np.ndarray
-    values: np.ndarray
-    raw: np.ndarray
-    load: float
 
 
 @of_runs
@@ -163,13 +144,13 @@ def stick_slip(run: xr.Dataset, segments: xr.Dataset) -> xr.Dataset:
     force = friction_signal(run) == "friction_force" and "normal_force" not in run
     motion = motion_of(run)
     examined, loads, remarks, waves = [], [], [], []
-    for signal, v in zip(_signals(run, segments), speed, strict=True):
+    for signal, v in zip(signals(run, segments), speed, strict=True):
         values, wave = _without_rig_wave(signal, motion)
         seen = examine_record(signal.time, values, force=force)
         examined.append(seen)
         loads.append(signal.load)
         waves.append(wave)
-        remarks.append(_remark(seen, _is_clipped(signal.raw), v))
+        remarks.append(_remark(seen, is_clipped(signal.raw), v))
     data = slip_columns(examined, speed, np.array(loads))
     saw = (data["waveform"] == CLASSES[1]) & (data["regularity"] == SLIP_KINDS[0])
     rig = np.full(saw.size, run.attrs.get(STIFFNESS, np.nan))  # else the steepest rise
@@ -196,79 +177,6 @@ def stick_slip(run: xr.Dataset, segments: xr.Dataset) -> xr.Dataset:
         names = {name: f"force_{name}" for name in _IN_SIGNAL_UNIT if name in result}
         result = result.rename(names)
     return stamp(result, **run.attrs)
-
-
-def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
-    """Yield the friction of each segment, one at a time to save memory."""
-    time, parts = run["time"].values, trimmed_slices(run, segments)
-    direction = segments["direction"].values.astype(float)
-    signal = friction_signal(run)
-    if signal == "friction_force":
-        force = run["friction_force"].values
-        # a sensor of reversed sign would exchange sticks and slips
-        means = [
-            d * np.nanmean(force[s][:_SIGN_SAMPLES])
-            for s, d in zip(parts, direction, strict=True)
-            if np.isfinite(force[s][:_SIGN_SAMPLES]).any()
-        ]
-        if means and max(means) < 0:
-            direction = -direction
-        normal = run["normal_force"].values if "normal_force" in run else None
-        zero = 0.0
-        if normal is not None and "omitted_reason" in segments and len(parts):
-            first = np.concatenate([normal[s][:1000] for s in parts])
-            if np.isfinite(first).any():
-                rests = unloaded_rests(run, segments, float(median_of_known(first))).normal
-                zero = float(rests.value.mean()) if rests else 0.0
-        for part, sign in one_by_one(zip(parts, direction, strict=True)):
-            raw = force[part]
-            if normal is None:
-                yield SegmentSignal(part, time[part], _signed(raw, sign), raw, np.nan)
-                continue
-            pressed = normal[part] - zero
-            load = float(np.mean(pressed)) if pressed.size else np.nan
-            if not load > 0:  # no contact, or a gap
-                known = pressed[np.isfinite(pressed) & (pressed > 0)]
-                load = float(known.mean()) if known.size > 0.5 * pressed.size else np.nan
-            if np.isfinite(load):
-                with np.errstate(divide="ignore", invalid="ignore"):
-                    ratio = np.divide(_signed(raw, sign), pressed, out=pressed)
-                yield SegmentSignal(part, time[part], ratio, raw, load)
-            else:
-                nothing = np.full(raw.size, np.nan)
-                yield SegmentSignal(part, time[part], nothing, raw, load)
-    elif signal == "friction_coefficient":
-        ratio = run["friction_coefficient"].values
-        # a coefficient that never changes sign contains no direction
-        begins = [ratio[s][:_SIGN_SAMPLES] for s in parts]
-        signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
-        for part, sign in one_by_one(zip(parts, direction, strict=True)):
-            raw = ratio[part]
-            values = _signed(raw, sign if signed else 1.0)
-            yield SegmentSignal(part, time[part], values, raw, np.nan)
-    else:
-        raise AnalysisError(
-            f"{name_of(run)}: no friction force or coefficient was read: its column is missing or "
-            "empty"
-        )
-
-
-def _signed(values: np.ndarray, sign: float) -> np.ndarray:
-    if sign == 0:
-        sign = -1.0 if np.nanmean(values) < 0 else 1.0
-    return -values if sign < 0 else values
-
-
-def _is_clipped(values: np.ndarray) -> bool:
-    """Return whether the signal repeatedly stays at its largest or smallest value (clipping)."""
-    if values.size < 32 or values.size > 1 << 21:
-        return False
-    for end in (np.nanmax(values), np.nanmin(values)) if np.isfinite(values).any() else ():
-        at = values == end
-        three = at[2:] & at[1:-1] & at[:-2]
-        if at.all() or int((three[1:] & ~three[:-1]).sum()) >= limits.MIN_CLIPPED_STRETCHES.value:
-            return not at.all()
-    return False
 
 
 def _texts(values: list[str]) -> np.ndarray:

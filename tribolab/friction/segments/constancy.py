@@ -20,7 +20,7 @@ import numpy as np
 from tribolab.arrays.chunks import running_total
 from tribolab.arrays.medians import median, median_of_known
 from tribolab.friction.segments import limits
-from tribolab.friction.segments.plateaus import running_median
+from tribolab.friction.segments.noise import running_median
 from tribolab.friction.segments.proof import Readings, changes_significantly
 
 _BINS_OF_PIECE = 16  # bins within a piece

@@ -5,6 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.segments import limits
+from tribolab.friction.segments.noise import (
+    Noise,
+    estimate_noise,
+    is_commanded,
+    quantum,
+    running_median,
+)
 from tribolab.friction.segments.pieces import (
     KEPT,
     ConstancyLimits,
@@ -14,15 +21,7 @@ from tribolab.friction.segments.pieces import (
     drop_unproven,
     join_equal,
 )
-from tribolab.friction.segments.plateaus import (
-    Noise,
-    estimate_noise,
-    find_breaks,
-    is_commanded,
-    quantum,
-    running_median,
-    straight_pieces,
-)
+from tribolab.friction.segments.plateaus import find_breaks, straight_pieces
 
 _MAX_BLOCKS = 16384  # more blocks cost time without benefit: leftovers are searched again
 _LEFTOVER_BLOCKS = 512  # blocks in a second search

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from tribolab.friction.segments import limits
-from tribolab.friction.segments.plateaus import running_median
+from tribolab.friction.segments.noise import running_median
 
 _FITTED_READINGS = 512  # readings of a fit; more are averaged
 _OUTLIER_SHARES = {False: 0.2, True: 0.02}  # of the range; True: positions

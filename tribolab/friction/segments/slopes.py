@@ -8,7 +8,7 @@ from tribolab.arrays.chunks import pieces
 from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
 from tribolab.friction.segments import limits
-from tribolab.friction.segments.plateaus import quantum
+from tribolab.friction.segments.noise import quantum
 
 _DIGIT_SAMPLE = 8192  # readings sufficient to find their last digit
 _DIGIT_ROUNDING = 0.01  # of a digit: rounding by arithmetic

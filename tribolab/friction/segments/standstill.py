@@ -15,7 +15,7 @@ from tribolab.friction.segments.limits import (
     MIN_SHARE_OF_SPEED,
     MIN_STANDSTILL,
 )
-from tribolab.friction.segments.plateaus import quantum
+from tribolab.friction.segments.noise import quantum
 from tribolab.friction.segments.stretches import Stretch, track
 
 _BLOCK_COUNTS = (32, 16, 8)  # blocks per segment: as many as the noise of the position allows
