@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.app import checks
+from tribolab.app import check_output, checks
 from tribolab.rig.parameters import Protocol, Rig
 from tribolab.rig.runs import simulate_run
 
@@ -37,7 +37,7 @@ def test_findings_tell_each_objection_whole_and_fold_the_rest_away(spiked):
 
 def test_findings_print_what_the_command_shows(spiked, tmp_path, capsys):
     found = tl.check(spiked)
-    checks.show([checks.Checked.of((tmp_path / "<a>.csv",), found)])
+    check_output.show([checks.Checked.of((tmp_path / "<a>.csv",), found)])
     summary, *rows = capsys.readouterr().out.splitlines()
     printed = str(found)
     assert printed.splitlines()[0] == summary

@@ -87,13 +87,13 @@ def check(
         with importing():
             plain_arrays_only()
             # imported late for a quick start
-            from tribolab.app import checks
+            from tribolab.app import check_output, checks
 
         stated = Stated.of(load, radius, speed, rate)
         parts = checks.raw_files_of(files)
         files = [file for part, _ in parts for file in part]
         instrument = instrument or describe_with(stated, files)
-        code = checks.code_of([], fail_on)  # report a wrong level before the work
+        code = check_output.code_of([], fail_on)  # report a wrong level before the work
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             checked = [
                 one
@@ -102,11 +102,11 @@ def check(
                     part, instrument or named, repeats=repeats, executor=pool, progress=progress
                 )
             ]
-        code = checks.code_of(checked, fail_on)
+        code = check_output.code_of(checked, fail_on)
         if as_json:
-            say(checks.as_json(checked, fail_on))
+            say(check_output.as_json(checked, fail_on))
         else:
-            checks.show(checked, notes=notes, everything=verbose or everything)
+            check_output.show(checked, notes=notes, everything=verbose or everything)
     raise typer.Exit(code)
 
 

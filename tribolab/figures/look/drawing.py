@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.ticker import AutoMinorLocator, FuncFormatter, MaxNLocator
 from matplotlib.typing import LineStyleType
 
 from tribolab.core.errors import AnalysisError
@@ -18,8 +17,8 @@ from tribolab.core.untyped import Arguments
 from tribolab.figures.axes import Scale, scales
 from tribolab.figures.colours import MARKERS, PALETTE
 from tribolab.figures.labels import plain
-from tribolab.figures.look.decades import SmallTicks, few_ticks, power_of_ten, symlog
 from tribolab.figures.look.guests import Panels, guests, name_all, whole_figure
+from tribolab.figures.look.scales import MAX_WITH_SMALL_TICKS, RAMP, axis_text, scale_axis, x_range
 from tribolab.figures.look.sheet import Sheet, finish, new_sheet
 from tribolab.figures.look.style import keep, paper_style
 from tribolab.figures.spec import FigureSpec, Key, Mark, Series, legend
@@ -27,8 +26,6 @@ from tribolab.figures.spec import FigureSpec, Key, Mark, Series, legend
 _LINES: dict[str, LineStyleType] = {
     "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.", "longdash": (0, (8, 2)),
 }  # fmt: skip
-_RAMP = "cividis"
-_MAX_WITH_SMALL_TICKS = 6  # with more panels, minor ticks would merge
 _MAX_LEGEND_ENTRY = 64  # longest legend entry in characters
 _LEVELS = 0.3, 3.0  # log10 of power over noise at the ends of a map's colour scale, as on the page
 
@@ -104,10 +101,10 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         mine = [series for series in spec.series if series.panel == number]
         x, y = seen[number]
         named = list(legend(mine).values())
-        along = _x_range(spec, number, seen)
-        small = len(spec.panels) <= _MAX_WITH_SMALL_TICKS
-        _scale_axis(axes, "x", panel.x, along, small)
-        _scale_axis(axes, "y", panel.y, y, small)
+        along = x_range(spec, number, seen)
+        small = len(spec.panels) <= MAX_WITH_SMALL_TICKS
+        scale_axis(axes, "x", panel.x, along, small)
+        scale_axis(axes, "y", panel.y, y, small)
         limits = axes.get_xlim(), axes.get_ylim()
         axes.set_autoscale_on(False)
         for series in sorted(mine, key=lambda series: series.style != "band"):
@@ -120,15 +117,15 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         _write_labels_above(
             axes,
             [mark for mark in spec.marks if mark.panel == number],
-            _x_range(spec, number, seen),
+            x_range(spec, number, seen),
         )
         if any(series.style == "heat" for series in mine):
             _colour_bar(axes)
         axes.set_xlim(limits[0])  # undo the change of limits by error bars
         axes.set_ylim(limits[1])
-        axes.set_xlabel(_label(panel.x) if _is_last(spec, number) else "")
+        axes.set_xlabel(axis_text(panel.x) if _is_last(spec, number) else "")
         if not y.names and _is_first(spec, number):
-            axes.set_ylabel(_label(panel.y))
+            axes.set_ylabel(axis_text(panel.y))
     for key in spec.keys:
         _key(sheet.panels[0], key)
 
@@ -143,85 +140,6 @@ def _is_first(spec: FigureSpec, number: int) -> bool:
     """Return whether no panel to the left shows the same quantity."""
     row = spec.panels[number - number % max(spec.across, 1) : number]
     return not any(panel.y.label == spec.panels[number].y.label for panel in row)
-
-
-def _x_range(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
-    """Return the range of a panel's abscissa, common to all panels with that abscissa."""
-    own = spec.panels[number].x
-    alike = [x for panel, (x, _) in zip(spec.panels, seen, strict=True) if panel.x == own]
-    return replace(alike[0], low=min(x.low for x in alike), high=max(x.high for x in alike))
-
-
-def _label(axis: Any) -> str:
-    words = axis.paper or axis.label
-    return f"{words} ({axis.unit})" if axis.unit and axis.unit != "date" else words
-
-
-def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale, small: bool) -> None:
-    low, high = seen.low, seen.high
-    own = getattr(axes, f"{name}axis")
-    limits = getattr(axes, f"set_{name}lim")
-    if axis.log:
-        getattr(axes, f"set_{name}scale")("log")
-    if seen.names:
-        axes.set_yticks(range(len(seen.names)), [_wrapped(text) for text in seen.names])
-        axes.tick_params(axis="y", which="both", length=0)
-        limits(low, high)
-    elif axis.linear_below is not None:
-        symlog(axes, axis.linear_below, low, high)
-    elif seen.log:
-        limits(10.0**low, 10.0**high)
-        few_ticks(own, 10.0**low, 10.0**high, small=small)
-        _label_parts(own, low, high)
-    elif axis.unit == "date":
-        _dates(axes)
-        limits(low, high)
-    else:
-        limits(low, high)
-        if axis.unit == "" and axis.label.startswith(("number", "cycle", "pair")):
-            own.set_major_locator(MaxNLocator(8, integer=True))
-        if small and not any(isinstance(a, SmallTicks) and a.axis is own for a in axes.artists):
-            axes.add_artist(SmallTicks(own, AutoMinorLocator()))
-
-
-def _label_parts(axis: Any, low: float, high: float) -> None:
-    """Label also 2 and 5 of each decade if a logarithmic axis covers little more than a decade."""
-    if high - low < 1.7:
-        axis.set_major_locator(_parts_locator(high - low))
-        axis.set_major_formatter(FuncFormatter(_part_of_decade))
-
-
-def _part_of_decade(value: float, place: int | None = None) -> str:
-    """Return the label of a tick between decades, e.g. 0.02 or 5·10⁻⁶."""
-    if 1e-3 <= value < 1e4 or power_of_ten(value).startswith("10"):
-        return f"{value:g}" if 1e-3 <= value < 1e4 else power_of_ten(value)
-    exponent = int(np.floor(np.log10(value) + 1e-9))
-    return f"{value / 10.0**exponent:.3g}·{power_of_ten(10.0**exponent)}"
-
-
-def _parts_locator(decades: float) -> Any:
-    # imported late: matplotlib's locators load slowly
-    from matplotlib.ticker import LogLocator
-
-    return LogLocator(subs=(1, 2, 5) if decades > 0.35 else (1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9))
-
-
-def _dates(axes: Axes) -> None:
-    # imported late: dates load slowly
-    import matplotlib.dates as mdates
-
-    locator = mdates.AutoDateLocator(maxticks=6)
-    axes.xaxis.set_major_locator(locator)
-    axes.xaxis.set_major_formatter(mdates.ConciseDateFormatter(locator))
-
-
-def _wrapped(text: str) -> str:
-    # imported late: only long names need it
-    import textwrap
-
-    apart = str(text).replace("_", "_ ")  # a space allows a line break after an underscore
-    lines = textwrap.wrap(apart, 25, max_lines=3, placeholder=" …") or [""]
-    return "\n".join(plain(line.replace("_ ", "_")) for line in lines)
 
 
 def colour_of(series: Series | Mark | Key) -> str:
@@ -258,7 +176,7 @@ def _series(axes: Axes, series: Series, y_seen: Scale, every: Sequence[Series], 
         axes.barh(y + shift, x, 0.9 * thick, color=colour, label=label)
     elif series.style == "heat":
         axes.scatter(
-            x, y, 5.0, _floats(series.high), marker="s", cmap=_RAMP, vmin=_LEVELS[0],
+            x, y, 5.0, _floats(series.high), marker="s", cmap=RAMP, vmin=_LEVELS[0],
             vmax=_LEVELS[1], linewidths=0, rasterized=True, label=label,
         )  # fmt: skip
     else:
