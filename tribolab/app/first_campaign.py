@@ -249,6 +249,11 @@ def campaign_text(
             cure=f'name it as modulus_file = "{kinds.moduli[0].name}" in [contact] of a campaign '
             f"file; `tribolab info {kinds.moduli[0].name}` shows how it is read",
         )
+    if kinds.results and not (kinds.runs or kinds.scans or kinds.moduli):
+        from tribolab.app.info.file_info import file_lines  # imported late for a quick start
+
+        file_lines(kinds.results[0])  # raises if it is another test, and says which
+        raise ConfigError(f"{kinds.results[0]}: it holds results, no run and no scan")
     lines = [_ABOUT, "[campaign]", f"name = {quoted(name)}", f"raw = {quoted(where)}"]
     lines += [f"output = {quoted(results)}"] if results != RESULTS else []
     pattern = pattern_of_names([common_name(files) for files in runs])

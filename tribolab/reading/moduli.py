@@ -79,7 +79,7 @@ def read_modulus_table(
     data = _in_si(table, unit, path.name, remarks)
     if data.shape[1] < 2:
         raise ReadError(f"{path.name}: the modulus has fewer than two rows of numbers")
-    data = _one_sweep(data, sweep, path.name)
+    data = _possible(_one_sweep(data, sweep, path.name), path.name, remarks)
     if table.shear:
         data[1:3] *= SHEAR_TO_TENSILE
         remarks.append("the shear modulus is multiplied by 3, as for an incompressible solid")
@@ -156,6 +156,29 @@ def _to_angular(column: Column, name: str, remarks: list[str]) -> float:
         raise ReadError(f"{name}: column '{shown(column.label)}': {error}") from error
 
 
+def _possible(data: np.ndarray, name: str, remarks: list[str]) -> np.ndarray:
+    """Leave out rows with a negative modulus, which no passive solid has: the force was too small.
+
+    File: a Mettler DMA below 0.1 Hz, where the force is 0.3 % of that above
+    (MahdiTBT/DMA-analysis-suite).
+    """
+    if data[0].min() <= 0:
+        raise ReadError(
+            f"{name}: frequencies of zero or below, e.g. {data[0].min():.3g} rad/s: are they "
+            "logarithms? write frequencies and moduli themselves"
+        )
+    good = (data[1] > 0) & (data[2] >= 0)
+    if good.sum() < 2:
+        raise ReadError(f"{name}: the moduli are negative, which no passive solid has")
+    if not good.all():
+        hertz = data[0, ~good] / (2 * np.pi)
+        remarks.append(
+            f"{(~good).sum()} rows with a negative modulus are left out ({hertz.min():.3g} to "
+            f"{hertz.max():.3g} Hz): rows next to them were measured no better, check them"
+        )
+    return data[:, good]
+
+
 def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarray:
     """Return the sweep asked for; a new one begins where the frequency turns back."""
     if np.ptp(data[0]) <= _SAME_FREQUENCY * data[0].max():
@@ -167,6 +190,9 @@ def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarr
     steps = np.sign(np.diff(data[0]))
     usual = np.sign(np.sum(steps)) or 1.0
     sweeps = np.split(data, np.flatnonzero(steps != usual) + 1, axis=1)
+    # RheoWin: 100 s at one frequency between two sweeps (PetrusKirsten/RheometerPlots)
+    sweeps = [part for part in sweeps if part.shape[1] > 1] or sweeps
+    data = np.concatenate(sweeps, axis=1)
     if sweep is None and len(sweeps) == 1:
         return data
     if sweep is None and np.unique(data[0]).size == data.shape[1]:
@@ -176,10 +202,8 @@ def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarr
     if sweep is None or not 0 <= sweep < len(sweeps):
         last = len(sweeps) - 1
         warm = [float(np.median(s[3])) for s in sweeps]
-        if np.isfinite(warm).all():
-            between = f"at {min(warm):.3g} to {max(warm):.3g} C "
-        else:
-            between = ""
+        ends = dict.fromkeys(f"{celsius:.3g}" for celsius in (min(warm), max(warm)))
+        between = f"at {' to '.join(ends)} C " if np.isfinite(warm).all() else ""
         raise ReadError(
             f"frequencies repeat, {len(sweeps)} sweeps {between}are in it",
             where=name,

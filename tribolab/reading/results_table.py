@@ -91,10 +91,12 @@ def find_other_test(text: str) -> str:
             if any(map(PLAIN_NUMBER.fullmatch, labels)):
                 continue
             found = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
-            if found & _OF_FRICTION or _has_moduli(labels, between, lines):
+            if _has_moduli(labels, between, lines):
                 return ""
+            # TRIOS writes the normal stress of a flow curve, and "Friction" among its settings
+            friction = found & _OF_FRICTION - ({"normal_stress"} if "viscosity" in found else set())
             for test, needed in _TESTS.items():
-                if needed <= found:
+                if needed <= found and not friction:
                     return test
     return ""
 
@@ -131,8 +133,8 @@ _OF_FRICTION = {"friction_force", "friction_coefficient", "normal_stress"}
 _QUANTITIES = {*_OF_FRICTION, *(name for needed in _TESTS.values() for name in needed)}
 
 
-_STATIC = re.compile(r"static|haft", re.IGNORECASE)
-_KINETIC = re.compile(r"kinetic|dynamic|gleit", re.IGNORECASE)
+_STATIC = re.compile(r"static|haft|mu_s$", re.IGNORECASE)
+_KINETIC = re.compile(r"kinetic|dynamic|gleit|mu_[dk]$", re.IGNORECASE)
 
 
 def _results(labels: list[str]) -> list[str]:
@@ -146,7 +148,7 @@ def _results(labels: list[str]) -> list[str]:
     loads = [label for label in labels if _is(label, "normal_stress")]
     ratios = [label for label in labels if _is(label, "friction_coefficient")]
     if any(map(_STATIC.search, ratios)) and any(map(_KINETIC.search, ratios)):
-        return ratios  # ASTM D1894 reports both of each specimen
+        return ratios  # ASTM D1894 reports both of each specimen, an inclined plane of each test
     times = any(_is(label, "time") for label in labels)
     return [*loads, *peaks] if peaks and loads and not times else []
 

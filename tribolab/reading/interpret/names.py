@@ -37,6 +37,7 @@ _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［�
 # special meaning of a unit for a quantity: weights for forces
 _MEANT = {"N": WEIGHTS}
 _OF_HEIGHTS = {"m": {"A": "angstrom"}}
+_NO_TORQUE = ("N", "1", "Pa")
 COUNTS = "counts"
 # columns of time that are named by their unit, e.g. of microcontroller clocks
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
@@ -126,7 +127,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
     wide = _WIDE_BRACKETS.match(label.strip())
     if wide and is_unit(wide["unit"].strip()):
         return wide["name"], wide["unit"].strip()
-    if normalise_label(label) in _CLOCKS:
+    if "_" not in label and normalise_label(label) in _CLOCKS:  # "mu_s" is no µs
         return "time", _CLOCKS[normalise_label(label)]
     if _RPM.fullmatch(label.strip()):
         return label, "rpm"
@@ -252,12 +253,15 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     turns = unit is not None and not scan and converts(unit, "Hz")
     role = "" if scan else role_of(name)
     plain = normalise_label(without_role(name)) if role in ("set", "measured") else ""
+    torque = unit is None and key_pattern("torque").search(text)  # "friction_torque" is no force
     for word in known_words("scan") if scan else known_words("run"):
         score = max(_score(text, word), _OF_DEVICE * _score(own, word) if own else 0.0)
         score = max(score, _score(plain, word) if plain else 0.0)
         known = quantity(word.quantity)
         read_as = (_OF_HEIGHTS if scan else _MEANT).get(known.unit, {}).get(unit or "")
         fits = unit is None or converts(read_as or unit, known.unit, known.bare)
+        if torque and known.unit in _NO_TORQUE:
+            continue
         if score and (known.unit != "1" if counted else fits):
             # a unit of only one quantity identifies it, whatever the name
             told = alone or (turns and word.quantity == "rotation_speed")

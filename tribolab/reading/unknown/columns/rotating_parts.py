@@ -15,6 +15,7 @@ from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import MICRO
 
 _TORQUE = key_pattern("torque")
+_OTHER_MOMENT = part_pattern("other_moment")
 _TORQUE_UNIT = re.compile(rf"[cmku{MICRO}]?N\s?[·⋅・∙•*.]?\s?[cmu{MICRO}]?m")  # and no J
 _ANGLE = key_pattern("angle")
 # what turns, where its unit is one of angles
@@ -33,6 +34,8 @@ def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     """
     if (said := _said(columns, "torque")) is not None:
         return said
+    # an instrumented treadmill: "Pitch Moment (Nm)" (csu-hmc/pitch-moment-compensation)
+    columns = [c for c in columns if not _OTHER_MOMENT.search(normalise_label(c.label))]
     units = [_name_and_unit(column)[1] for column in columns if not column.used]
     told = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
     named = _only_column(columns, _TORQUE.search, "N m")

@@ -40,6 +40,7 @@ from tribolab.reading.unknown.derivations.stated_lines import find_gain, take_st
 from tribolab.reading.unknown.derivations.two_bodies import (
     exclude_surface_speeds,
     find_surface_speeds,
+    numbered_in_doubt,
 )
 from tribolab.reading.unknown.header.factors import unapplied_factors, unapplied_height_factors
 from tribolab.reading.unknown.header.profiles import (
@@ -167,10 +168,12 @@ def _combined_forces(
 ) -> tuple[list[DraftColumn], list[str]]:
     """Combine the forces and speeds of several columns; list the doubts."""
     columns = force_or_ratio(columns)
-    columns = exclude_surface_speeds(columns, find_surface_speeds(layout, columns, numbers))
+    pair = find_surface_speeds(layout, columns, numbers)
+    columns = exclude_surface_speeds(columns, pair)
     columns = confirm_lever_arm_force(layout, columns)
     columns = as_entrainment_speed(layout, columns)
     doubts = disagreement(columns, numbers) + guesses_of_inclined(layout, columns)
+    doubts += numbered_in_doubt(layout, pair)
     return columns, doubts + load_zeros_in_doubt(layout, columns)
 
 

@@ -9,6 +9,9 @@ from tribolab.arrays.reversals import reversals
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.derive import Given
 from tribolab.reading.interpret.missing import MissingInput, missing_inputs
+from tribolab.reading.interpret.names import is_count
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import (
     angle_of,
     radius_of,
@@ -19,6 +22,8 @@ from tribolab.reading.unknown.derivations.derive import held_quantities
 from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Follows
 from tribolab.reading.unknown.derivations.stated_lines import column_in_volts
 from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
+
+_OF_FRICTION = ("N", "N m", "1", "Pa", "V")
 
 
 class Uncalibrated(NamedTuple):
@@ -85,5 +90,11 @@ def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     )
     places = {column.place for column in turning if column is not None}
     noted = (c for c in columns if c.note and c.reason is not Reason.TEXT)
-    unknown = (c for c in noted if not c.quantity and c.label)
+    unknown = (c for c in noted if not c.quantity and c.label and _may_be_friction(c))
     return [column for column in unknown if column.place not in places]
+
+
+def _may_be_friction(column: DraftColumn) -> bool:
+    """Whether the unit of a column does not rule out a friction signal: 'h in mm' does."""
+    unit = column.unit or bare_name(column)[1]
+    return not unit or is_count(unit) or any(converts(unit, si) for si in _OF_FRICTION)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.lexicon.lexicon import (
@@ -25,7 +26,6 @@ from tribolab.units.spellings import plain_unit
 
 _SURFACE = "the speed of one of two surfaces"
 _SPEEDS = {"rotation_speed": "Hz", "sliding_velocity": "m/s"}
-# so little tells bodies apart only where the text speaks of two
 _NUMBERED = (re.compile("1$"), re.compile("2$"))
 
 
@@ -43,12 +43,9 @@ def find_surface_speeds(
 ) -> Pair | None:
     """Return the two columns of how fast two surfaces go, where their names are those of bodies."""
     speeds = [(column, _speed_of(column)) for column in columns]
-    texts = [normalise_label(text) for text in layout.named_sentences]
     for quantity in _SPEEDS:
         mine = [column for column, held in speeds if held == quantity]
-        twin = part_pattern("two_bodies")
-        is_twin = len(mine) == 2 and any(map(twin.search, texts))
-        for bodies in (*pairs_of_bodies(), *((_NUMBERED,) if is_twin else ())):
+        for bodies in (*pairs_of_bodies(), *((_NUMBERED,) if len(mine) == 2 else ())):
             pairs = [(a, b) for a in mine for b in mine if a is not b and _are(bodies, a, b)]
             if len(pairs) == 1:
                 first, second = (numbers[:, c.place - 1] for c in pairs[0])
@@ -56,6 +53,17 @@ def find_surface_speeds(
                 opposed = bool((both < 0).sum() > 0.5 * np.isfinite(both).sum())
                 return Pair(pairs[0], quantity == "rotation_speed", opposed, bodies)
     return None
+
+
+def numbered_in_doubt(layout: Layout, pair: Pair | None) -> list[str]:
+    """Ask whether two numbered speeds are of two surfaces, unless the text speaks of two."""
+    twin = part_pattern("two_bodies")
+    said = any(twin.search(normalise_label(text)) for text in layout.named_sentences)
+    if pair is None or pair.bodies is not _NUMBERED or said:
+        return []
+    one, other = (shown(column.label, 30) for column in pair.columns)
+    what = "the speeds of two surfaces, which slide at the difference (or one speed, twice)"
+    return [f"'{one}' and '{other}' are {what}"]
 
 
 def _are(bodies: tuple[re.Pattern[str], re.Pattern[str]], a: DraftColumn, b: DraftColumn) -> bool:
