@@ -344,6 +344,7 @@ def test_names_that_stand_elsewhere_or_twice_are_found(name, encoding, tmp_path)
         ("Time [s],Compliance [1/Pa]", "a creep test"),
         ("Time [s],Relaxation Modulus [Pa]", "a test of stress relaxation"),
         ("Shear Rate [1/s],Shear Stress [Pa]", "a flow curve"),
+        ("Friction,on\nShear Rate [1/s],Viscosity [Pa s],Normal Stress [Pa]", "a flow curve"),
         ("T (°C),aT", "shift factors of a master curve"),
         (
             "Time (min),Temperature (°C),Storage Modulus (MPa),Loss Modulus (MPa),Frequency (Hz)",
@@ -353,8 +354,25 @@ def test_names_that_stand_elsewhere_or_twice_are_found(name, encoding, tmp_path)
 )
 def test_another_test_of_a_rheometer_is_named(columns, test, tmp_path):
     file = tmp_path / "a.csv"
-    wide = columns.count(",") - 1
+    wide = columns.splitlines()[-1].count(",") - 1
     file.write_text(f"{columns}\n" + "".join(f"{n},{n + 1}{',1' * wide}\n" for n in range(1, 30)))
     result = CliRunner().invoke(cli.app, ["info", str(file)])
     assert result.exit_code == 3
     assert test in result.output
+
+
+def test_what_cannot_be_a_modulus_is_left_out_or_refused(tmp_path):
+    file = tmp_path / "a.csv"
+    head = "f [Hz],E' [MPa],E'' [MPa]\n"
+    good = "".join(f"{2**n},{50 + n},{5 + n}\n" for n in range(5))
+    file.write_text(f"{head}0.1,-1.1,0.3\n0.3,2.3,-6.1\n{good}")
+    read = read_modulus_table(file)
+    np.testing.assert_allclose(read.storage, 1e6 * (50 + np.arange(5)))
+    assert "2 rows with a negative modulus are left out (0.1 to 0.3 Hz)" in read.remarks[0]
+    file.write_text(head + good.replace("50", "-50").replace("2,", "-2,"))
+    with pytest.raises(ReadError, match="logarithms"):
+        read_modulus_table(file)
+    file.write_text(f"{head}{good}{'1,0.7,1.5' + chr(10)}{'1,0.8,1.6' + chr(10)}{good}")
+    assert read_modulus_table(file, sweep=1).storage.size == 5
+    with pytest.raises(ReadError, match="2 sweeps are in it"):
+        read_modulus_table(file)

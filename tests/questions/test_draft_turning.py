@@ -112,6 +112,15 @@ def test_two_rollers_slide_at_the_difference_of_their_surfaces(language, tmp_pat
     assert coefficient(run) == pytest.approx(1.2 / 0.02 / 400, rel=2e-3)
 
 
+def test_two_numbered_speeds_are_asked_about(tmp_path):
+    time, rpm, torque, load = columns(friction=1.2, load=400)
+    header = "Time [s]\tSpeed 1 [rpm]\tSpeed 2 [rpm]\tTorque [N m]\tLoad [N]"
+    above = ["Disc diameter: 40 mm"]
+    path = written(tmp_path / "a.txt", above, header, (time, 1.006 * rpm, rpm, torque, load))
+    with pytest.raises(GuessedError, match="slide at the difference"):
+        tl.read(path)
+
+
 def test_a_ball_on_a_disc_slides_at_the_difference_of_both_speeds(tmp_path):
     time, rpm, force, load = columns(friction=1.5)
     header = "Time [s]\tDisc Speed [mm/s]\tBall Speed [mm/s]\tTraction [N]\tLoad [N]"

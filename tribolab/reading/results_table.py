@@ -53,6 +53,8 @@ def find_results_table(text: str) -> ResultsTable | None:
     ResultsTable(names=['Ra [um]', 'Rz [um]'], rows=2)
     >>> find_results_table("x [mm];z [um]\n0;0,41\n1;0,43\n") is None
     True
+    >>> find_results_table("mass;mu_s;mu_d\n40;0.5;0.4\n80;0.6;0.4\n").names
+    ['mu_s', 'mu_d']
     """
     lines = _first_lines(text, _MAX_ROWS + 1)
     if len(lines) > _MAX_ROWS:

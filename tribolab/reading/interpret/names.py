@@ -241,6 +241,8 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     --------
     >>> matches("Reibkraft", "N")[0].quantity, matches("T", "degC")[0].quantity
     ('friction_force', 'temperature')
+    >>> matches("friction_torque", None), matches("mu_s", None)[0].quantity
+    ([], 'friction_coefficient')
     """
     text = "mu" if _is_ratio(name) else normalise_label(name)
     device, of_device = device_of(name)

@@ -101,6 +101,8 @@ def map_header(
     >>> header = map_header(["Field of view: 20 x 10 um", "Heights [nm]"], (5, 10), ".")
     >>> round(header.dx * 1e6, 9), round(header.dy * 1e6, 9), header.height
     (2.0, 2.0, 1e-09)
+    >>> round(map_header(["XYResolution X,0.625,[um]"], (5, 10), ".").dx * 1e6, 9)
+    0.625
     """
     texts = [
         part

@@ -92,7 +92,10 @@ def _scan(
         axis = column._replace(quantity=name, unit=unit, used=True)
         if not all(stated):
             others = other_units("height" if name == "height" else "m", unit)
-            axis = axis._replace(guessed=(f"it is {name} in {unit}",), options=others)
+            why = f"it is {name} in {unit}"
+            if name == "x" and (np.diff(part[:, 0]) == 1).all():
+                why += ", and does not only count the points"
+            axis = axis._replace(guessed=(why,), options=others)
         axes.append(axis)
     if all(stated):
         return axes, []

@@ -265,6 +265,8 @@ def understood_columns(draft: Drafted) -> list[str]:
             label = f"'{shown(name, 20)}'" if name else f"in column {column.place}"
             unit = column.read_unit or quantity(column.quantity).unit
             said.append(f"{column.quantity} {label}" + ("" if unit == "1" else f" ({unit})"))
+    if not (said or draft.labels):
+        return ["none of its columns has a name: write names and units above the numbers"]
     return said[:_LISTED] + _and_more(len(said) - _LISTED)
 
 
