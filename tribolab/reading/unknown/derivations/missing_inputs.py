@@ -10,7 +10,7 @@ from tribolab.core.errors import shown
 from tribolab.reading.interpret.derive import Given
 from tribolab.reading.interpret.missing import MissingInput, missing_inputs
 from tribolab.reading.interpret.names import is_count
-from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import (
     angle_of,
