@@ -324,7 +324,7 @@ def test_segments_of_another_run_are_an_error():
 
 def test_run_without_friction_is_an_error():
     run = strokes([1e-3]).run
-    with pytest.raises(AnalysisError, match="neither 'friction_force' nor"):
+    with pytest.raises(AnalysisError, match="no friction force or coefficient"):
         analysed(run)
 
 

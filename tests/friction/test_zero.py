@@ -342,7 +342,7 @@ def test_strokes_of_hardly_any_friction_do_not_speak_against_a_turned_sign():
     run = run.assign(sliding_velocity=-run["sliding_velocity"])
     rows = check_run(run, find_segments(run), analysed(run)).rows
     (row,) = [row for row in rows if row["check"] == "friction_sign"]
-    assert "in 2 more it is too small to decide" in row["message"]
+    assert "in 2 more, friction is too small to decide" in row["message"]
     assert row["cure"].startswith("Set `sign = -1`")
 
 

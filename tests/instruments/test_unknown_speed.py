@@ -197,5 +197,6 @@ def test_every_objection_is_printed_with_its_reason_and_at_most_a_handful(togeth
     lines = [line for line in terminal.outcome_lines(many) if "suspect" in line]
     assert len(lines) == 6
     first, second, *_ = (run.name for run in together.runs)
-    assert f"in: {first}, {first}: " in lines[0] and f"in: {second}, {second}: " in lines[1]
+    assert lines[0].startswith(f"suspect: {first}, {first}: ")
+    assert lines[1].startswith(f"suspect: {second}, {second}: ")
     assert " 5 more, see " in lines[-1] and lines[-1].endswith("checks.csv")

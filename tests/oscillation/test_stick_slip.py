@@ -278,7 +278,7 @@ def test_no_segments_give_an_empty_answer():
 
 def test_a_run_without_friction_is_refused():
     run = a_run(np.ones(100)).drop_vars("friction_coefficient")
-    with pytest.raises(AnalysisError, match="friction_force"):
+    with pytest.raises(AnalysisError, match="no friction force or coefficient"):
         stick_slip(run, find_segments(run))
 
 

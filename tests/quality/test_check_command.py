@@ -105,7 +105,7 @@ def test_results_beside_their_profile_are_compared_with_it(scans, shared_data, t
         ("stickslip_paper_CeCILL-B/k168Nm_v1100.mat", r"note +hum .*mains hum at 49\.96 Hz"),
         ("rock_velstep_MIT/velstep4_BRAVA_expb819_basalt.txt", r"note +rate_changes .*changes 1"),
         ("cetr_umt2_MIT/HT-2n-6-4 2_001.csv", r"note +restarts .*2 steps"),
-        ("surfacetopography_MIT/dektak-1.csv", r"note +spacing .*look uneven"),
+        ("surfacetopography_MIT/dektak-1.csv", r"note +spacing .*are uneven"),
     ],
 )
 def test_known_troubles_too_small_to_object_to_are_shown(shared_data, path, said):

@@ -374,6 +374,7 @@ def test_long_names_beside_stick_slip_stay_on_the_paper():
     for figure in (
         plot.slip_traces(stack),
         plot.waveform_map({name: tl.friction.stick_slip_curve([slip])}),
+        plot.slip_spectrogram({name: slip}),
     ):
         canvas = FigureCanvasAgg(figure)
         drawn = [t for t in figure.findobj(mpl.text.Text) if "basalt" in t.get_text()]

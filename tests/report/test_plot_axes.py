@@ -182,6 +182,7 @@ def drawings():
         "slip_spectra": (
             lambda **k: plot.slip_spectra({"dry": (slip, 0)}, **k), 1, "red and white noise",
         ),
+        "slip_spectrogram": (lambda **k: plot.slip_spectrogram({"dry": slip}, **k), 1, ""),
         "model_sensitivity": (lambda **k: plot.model_sensitivity(spread, **k), 2, "model"),
         "trace": (lambda **k: plot.trace(run, segments, friction, **k), 3, "mean"),
         "strokes": (lambda **k: plot.strokes(run, segments, friction, **k), 2, "forward"),

@@ -161,7 +161,7 @@ def test_of_two_scans_that_differ_none_is_blamed_alone():
     data = xr.Dataset({"height": (("scan", "x"), rows)}, {"x": 1e-6 * np.arange(8192)})
     row = check_scans(data).table.query("check == 'repeats'").iloc[0]
     assert row.status in ("suspect", "fail")
-    assert row.message.startswith("the two scans differ")
+    assert row.message.startswith("the spectra of the two scans differ")
     assert row.value == pytest.approx(9.0, rel=1e-6)  # three times the height
 
 

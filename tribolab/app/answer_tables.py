@@ -8,10 +8,12 @@ from rich.table import Table
 
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.running_in_record import RunningIn, length_text
+from tribolab.records.runs.starts import starts_of
 from tribolab.records.wording import error_text
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
+    from tribolab.figures.spec import FigureSpec
 
 _MAX_ROWS = 12
 _NONE = "–"
@@ -32,15 +34,21 @@ def _table(*headings: str) -> Table:
 
 def _starts_or_ramps(outcome: Outcome) -> Table | None:
     """Return static friction after rests, or the extremes of ramps; None for other tests."""
-    # imported late for a quick start
-    from tribolab.report.page_figures.ramps import ramp_specs
-    from tribolab.report.page_figures.starts import static_figures
-
     runs = outcome.runs[:_MAX_ROWS]
     entries = [outcome.store.get("run", run.name, RunRecord) for run in runs]
-    specs = static_figures([entry.record for entry in entries if entry is not None])
-    if not any(run.segments for run in outcome.runs):
-        specs += ramp_specs([run for run in runs if run.ramp and run.done], outcome.folder)
+    started = [entry.record for entry in entries if entry and starts_of(entry.record)]
+    ramps = [run for run in runs if run.ramp and run.done]
+    specs: list[FigureSpec] = []
+    if started:
+        # imported late: most campaigns need neither
+        from tribolab.report.page_figures.starts import static_figures
+
+        specs = static_figures(started)
+    elif ramps and not any(run.segments for run in outcome.runs):
+        # imported late, as above
+        from tribolab.report.page_figures.ramps import ramp_specs
+
+        specs = ramp_specs(ramps, outcome.folder)
     if not specs or (numbers := specs[0].numbers) is None or len(numbers.rows) > _MAX_ROWS:
         return None
     table = _table(*numbers.heads)

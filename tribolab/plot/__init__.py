@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     )
     from tribolab.figures.subjects.slip_spectrum import (
         slip_spectra as slip_spectra,
+        slip_spectrogram as slip_spectrogram,
     )
     from tribolab.figures.subjects.spread import (
         friction_spread as friction_spread,

@@ -48,9 +48,9 @@ def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
 
     Examples
     --------
-    >>> point = {"runs": 3, "friction_coefficient": 0.3, "friction_coefficient_U95": 0.1}
+    >>> point = {"runs": 3, "friction_coefficient": 0.5, "friction_coefficient_U95": 0.25}
     >>> uncertain_mean([point]), uncertain_mean([point | {"runs": 1}])
-    (0.3333333333333333, None)
+    (0.5, None)
     """
     shares = sorted(
         point["friction_coefficient_U95"] / abs(point["friction_coefficient"])

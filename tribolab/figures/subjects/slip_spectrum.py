@@ -1,4 +1,4 @@
-"""Figure of stick-slip spectra over frequency and speed."""
+"""Figures of stick-slip spectra over frequency, and over frequency and speed."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from tribolab.figures.colours import BLACK, ORANGE, PURPLE, SKY
 from tribolab.figures.labelled import RunLabel, by_label
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, Style
+from tribolab.figures.subjects.curves import SPEED_AXIS
 
 _LOUDEST, _QUIETEST = 3.0, 0.3  # highest and lowest level of a map, as log10 of power over noise
 Slips = Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset]
@@ -91,6 +92,58 @@ def _heading(label: str, row: xr.Dataset) -> str:
     words = " ".join(filter(None, (str(row["regularity"].item()), str(row["waveform"].item()))))
     own = row["dominant_frequency"].item()
     return f"{label}: {words}" + (f", {own:.3g} Hz" if np.isfinite(own) else "")
+
+
+@plotted(panels=0)
+def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
+    """Draw the ratio of power to noise over speed and frequency, a panel for each run.
+
+    Only power of at least twice the noise is drawn. Crosses: dominant oscillation.
+
+    Parameters
+    ----------
+    slips
+        Label to a result of `stick_slip`.
+
+    Raises
+    ------
+    AnalysisError
+        If no segment has a spectrum.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    >>> slip = tl.stick_slip(run, tl.find_segments(run))
+    >>> drawn = tl.plot.figure_data(slip_spectrogram({"dry": slip}))
+    >>> drawn.panel.unique().tolist(), "log10_power_over_noise" in drawn
+    (['dry'], True)
+    """
+    levels = {label: power_levels(slip) for label, slip in slips.items()}
+    shown = {label: level for label, level in levels.items() if level is not None}
+    if not shown:
+        raise AnalysisError("no segment has a spectrum to draw")
+    y = Axis("frequency f", "Hz", log=True, column="frequency_Hz")
+    series = []
+    for panel, (label, (speed, frequency, level)) in enumerate(shown.items()):
+        columns = {"sliding_speed_m_s": speed, "frequency_Hz": frequency}
+        columns["log10_power_over_noise"] = level
+        heat = Series(label, speed, frequency, "heat", BLACK, panel, high=level, columns=columns)
+        series.append(heat)
+        slip = slips[label]
+        dominant = slip["dominant_frequency"].values
+        if np.isfinite(dominant).any():
+            v = slip["sliding_speed"].values
+            series.append(
+                Series("dominant oscillation", v, dominant, "points", ORANGE, panel, open=True)
+            )
+    return FigureSpec(
+        title="Ratio of power to noise over speed and frequency",
+        note="Only power of at least twice the noise is drawn.",
+        panels=tuple(Panel(SPEED_AXIS, y, label, name=label) for label in shown),
+        series=tuple(series),
+        across=min(len(shown), 2),
+    )
 
 
 def power_levels(slip: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:

@@ -31,7 +31,7 @@ def is_locked(room: Path) -> bool:
 
 def is_fresh(path: Path) -> bool:
     """Whether a file was written by a command that is still running."""
-    with contextlib.suppress(OSError, IndexError):
+    with contextlib.suppress(OSError, IndexError, ValueError):
         state, room = path.stat(), path.absolute().parents[2]
         alone = state.st_nlink == 1 and not path.is_symlink()
         return alone and state.st_mtime_ns >= lock_of(room).stat().st_mtime_ns and is_locked(room)
