@@ -15,13 +15,12 @@ from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.core.provenance import as_text
 from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
-from tribolab.records.judgement import has_unknown_zero
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.surfaces.roughness_words import FORM, roughness_in_words
-from tribolab.records.verdict import uncertain_mean, uncertain_words, verdict_of
+from tribolab.records.verdict import has_unknown_zero, uncertain_mean, uncertain_words, verdict_of
 
 if TYPE_CHECKING:
     pass

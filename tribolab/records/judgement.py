@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -51,11 +51,6 @@ def is_bad(run: Mapping[str, Any]) -> bool:
 def is_odd(run: Mapping[str, Any]) -> bool:
     """Return whether a run contradicts its repeats, and nobody decided on it."""
     return any(row["check"] == "repeats" and not row["decision"] for row in run["checks"])
-
-
-def has_unknown_zero(checks: Iterable[Mapping[str, Any]]) -> bool:
-    """Return whether the zero of the friction force is in doubt: then U95 does not include it."""
-    return any(row["check"] == "zero_reference" and row["status"] == "suspect" for row in checks)
 
 
 def status_word(run: Mapping[str, Any]) -> str:

@@ -43,6 +43,11 @@ def is_ramp(run: Mapping[str, Any]) -> bool:
     return not run["segments_found"] and ramp > RAMP_SHARE.value * (run.get("duration_s") or 0.0)
 
 
+def has_unknown_zero(checks: Iterable[Mapping[str, Any]]) -> bool:
+    """Return whether the zero of the friction force is in doubt: then U95 does not include it."""
+    return any(row["check"] == "zero_reference" and row["status"] == "suspect" for row in checks)
+
+
 def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
     """Return U95 over the mean of repeats, the median over speed, if it is large; else None.
 

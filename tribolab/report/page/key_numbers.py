@@ -12,11 +12,12 @@ from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import load_text
 from tribolab.figures.spec import KeyRow, KeyTable
 from tribolab.friction.points.mean_of_repeats import mean_of_repeats
-from tribolab.records.judgement import has_unknown_zero, is_bad, is_odd
+from tribolab.records.judgement import is_bad, is_odd
 from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
 from tribolab.records.runs.running_in_record import RunningIn, length_text
 from tribolab.records.surfaces.roughness_words import roughness_u95
+from tribolab.records.verdict import has_unknown_zero
 from tribolab.records.wording import error_text
 from tribolab.report.page.in_words import by_speed, half_speed
 from tribolab.report.page_figures.curves import system_name
