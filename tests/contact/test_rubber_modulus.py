@@ -344,7 +344,6 @@ def test_names_that_stand_elsewhere_or_twice_are_found(name, encoding, tmp_path)
         ("Time [s],Compliance [1/Pa]", "a creep test"),
         ("Time [s],Relaxation Modulus [Pa]", "a test of stress relaxation"),
         ("Shear Rate [1/s],Shear Stress [Pa]", "a flow curve"),
-        ("Friction,on\nShear Rate [1/s],Viscosity [Pa s],Normal Stress [Pa]", "a flow curve"),
         ("T (°C),aT", "shift factors of a master curve"),
         (
             "Time (min),Temperature (°C),Storage Modulus (MPa),Loss Modulus (MPa),Frequency (Hz)",

@@ -93,12 +93,10 @@ def find_other_test(text: str) -> str:
             if any(map(PLAIN_NUMBER.fullmatch, labels)):
                 continue
             found = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
-            if _has_moduli(labels, between, lines):
+            if found & _OF_FRICTION or _has_moduli(labels, between, lines):
                 return ""
-            # TRIOS writes the normal stress of a flow curve, and "Friction" among its settings
-            friction = found & _OF_FRICTION - ({"normal_stress"} if "viscosity" in found else set())
             for test, needed in _TESTS.items():
-                if needed <= found and not friction:
+                if needed <= found:
                     return test
     return ""
 
