@@ -184,7 +184,7 @@ def _jobs(
 
 
 def _assign_faults(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
-    """Return the run or surface of each fault, assigning faults with the fewest choices first."""
+    """Return the jobs with each fault assigned to a suitable one that has the fewest so far."""
     for name in faults:
         fault = fault_of_campaign(name)
         able = [k for k, job in enumerate(work) if _can_have(job, fault)]

@@ -88,7 +88,7 @@ def _parts(
     surface: str, radius: float, youngs_modulus: float, normal_force: float, slide_roll: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return ln(viscosity times speed) [N/m], fluid friction, and friction per shear stress."""
-    # imported late: scipy loads slowly
+    # imported late for a quick start
     from tribolab.contact.geometry import PointContact
     from tribolab.lubrication.parameters import Interface, Solver
     from tribolab.lubrication.stribeck import stribeck_curve

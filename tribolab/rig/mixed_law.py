@@ -88,7 +88,7 @@ def mixed_law(surface: str, normal_force: float) -> MixedLaw:
     >>> law.shear_stress, round(float(law(1e-6)), 2)
     (840000.0, 1.38)
     """
-    # imported late: scipy loads slowly
+    # imported late for a quick start
     from tribolab.lubrication.stribeck import stribeck_curve
 
     known = xu2026.surface(surface)

@@ -39,7 +39,7 @@ def dry_contact(name: str) -> SurfaceGroups:
     >>> sorted(dry_contact("Sb-R"))
     ['adhesion', 'contact', 'effective_work', 'loads', 'psd', 'rubber', 'separation']
     """
-    # imported late: scipy loads slowly
+    # imported late for a quick start
     from tribolab.contact.persson import contact_area_ratio
     from tribolab.contact.separation import separation_table
     from tribolab.rubber.friction import viscoelastic_friction
@@ -79,7 +79,7 @@ def dry_contact(name: str) -> SurfaceGroups:
 
 def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
     """Return adhesion at zero pressure, at the loads and on a grid, all solved together."""
-    # imported late: scipy loads slowly
+    # imported late for a quick start
     from tribolab.contact.adhesive_contact import adhesion
     from tribolab.contact.hertz import hertz_mean_pressure
 
@@ -105,7 +105,7 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
 
 def modulus_table() -> xr.Dataset:
     """Return the storage and loss modulus over frequency that replace the paper's rubber."""
-    # imported late: scipy loads slowly
+    # imported late for a quick start
     from tribolab.rubber.modulus import PDMS_STAND_IN
 
     omega = np.geomspace(1e-2, 1e13, 226)
@@ -131,7 +131,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
         ``curve_<force>N`` over the sliding speed, with the shear stress that the paper fitted
         at that force (Smooth: that of the lowest); ``profiles`` at the lowest force; ``factors``.
     """
-    # imported late: scipy loads slowly
+    # imported late for a quick start
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.stribeck import stribeck_curve
 
@@ -153,7 +153,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
 
 
 def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
-    # imported late: scipy loads slowly
+    # imported late for a quick start
     from tribolab.lubrication.film import film_profile
 
     profiles = [

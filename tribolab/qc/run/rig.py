@@ -97,7 +97,7 @@ def _steps_without_friction(
     """Report steps of the load that the friction force at the same speed does not follow."""
     if "friction_force" not in subject.friction or np.isfinite(subject.target_normal_force).any():
         return []
-    # not the half loop: if the load changes within a pair, it is already scaled by the load
+    # not the half loop: of a pair whose load changes, its friction is already divided by the load
     zero = float(median_of_known(subject.friction["friction_force_offset"].values))
     force = np.abs(subject.segment_means("friction_force") - zero)
     speed = np.nan_to_num(subject.friction["sliding_speed"].values)
