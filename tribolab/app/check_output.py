@@ -81,6 +81,7 @@ def count_lines(checked: Sequence[Checked]) -> list[str]:
 
     Examples
     --------
+    >>> from pathlib import Path
     >>> files = [Checked((Path(f"{n}.csv"),), status=s) for n, s in enumerate(("pass", "fail"))]
     >>> count_lines(files)
     ['2 checked: 1 fail, 1 pass', 'to look at: 1.csv (fail)']
