@@ -74,10 +74,10 @@ def peak():
 
 print("%-12s %33s %6.0f MB" % ("libraries", "peak", peak()))
 friction = "tribolab.friction."
-timed("tribolab.reading.runs.read_run", "read_run", "read")
+timed("tribolab.reading.unknown_run", "read_run", "read")
 timed(friction + "segments.find", "find_segments", "segments")
 timed(friction + "coefficient.coefficient", "friction_coefficient", "coefficient")
-timed(friction + "oscillation.stick_slip", "stick_slip", "stick-slip")
+timed(friction + "oscillation.slip_segments", "stick_slip", "stick-slip")
 timed("tribolab.qc.run.checks", "check_run", "checks")
 timed("tribolab.campaign.runs.stage", "write_data", "write")
 timed("tribolab.campaign.runs.stage", "_trace", "trace")
