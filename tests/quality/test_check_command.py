@@ -75,7 +75,7 @@ def test_runs_scans_and_rubbish_can_be_given_together(scans, shared_data, tmp_pa
     found = told(scans / "sb-r_1.csv", rubbish, rock)
     assert [one["kind"] for one in found["runs"]] == ["scan", "file", "run"]
     assert found["runs"][1]["status"] == "unreadable" and found["exit_code"] == 3
-    assert "odd.csv: no known instrument writes such a file" in found["runs"][1]["error"]
+    assert "odd.csv: the file contains no table of numbers" in found["runs"][1]["error"]
 
 
 def test_err110_of_the_roughness_tester_is_found(shared_data):
@@ -185,7 +185,7 @@ def test_the_terminal_names_options_and_not_arguments_of_functions(
 ):
     monkeypatch.chdir(tmp_path)  # the folder's name is no part of the sentence's length
     unknown, squeezed = Path("unknown.txt"), Path("run.csv.gz")
-    unknown.write_text("one\ntwo\n")
+    unknown.write_text("one,two\n" + "1,2\n2,5\n3,4\n" * 9)
     squeezed.write_bytes(b"PK\x03\x04")
     done = CliRunner().invoke(cli.app, [command, str(unknown), str(squeezed)])
     assert done.exit_code == 3
@@ -217,7 +217,7 @@ def test_of_a_map_without_units_the_terminal_says_how_to_describe_it(tmp_path, c
 
 def test_run_names_the_key_of_the_campaign_file_and_no_option_that_it_lacks(tmp_path):
     (tmp_path / "raw").mkdir()
-    (tmp_path / "raw/odd.txt").write_text("one\ntwo\n")
+    (tmp_path / "raw/odd.txt").write_text("one,two\n" + "1,2\n2,5\n3,4\n" * 9)
     headless_map(tmp_path / "raw/map.txt")
     (tmp_path / "campaign.toml").write_text(
         '[campaign]\nname = "a"\n[[surface]]\nname = "S"\nscans = "map.txt"\n'

@@ -68,7 +68,7 @@ def test_a_bad_table_is_refused_with_place_and_cure(tmp_path, header, lines, tol
         (b"TDSm\x0e\x00" + b"\xff" * 10, "no known instrument writes"),
         (b"\x89HDF\r\n\x1a\n" + b"\x00" * 100, "this HDF5 or netCDF file cannot be read"),
         (b"CDF\x01" + b"\xff" * 5, "netCDF"),
-        (b"lorem ipsum " * 1000, "no known instrument"),
+        (b"lorem ipsum " * 1000, "no table of numbers"),
     ],
 )
 def test_content_that_is_no_table_is_refused(tmp_path, content, told):

@@ -212,7 +212,7 @@ def started(name, load, static, rests=(3.0, 10.0, 31.0)):
     )
     starts = tuple(
         {"waiting_time_s": rest, "static_friction_coefficient": mu, "friction_coefficient": 0.4}
-        | {"static_friction_coefficient_sem": 0.001}
+        | {"static_friction_coefficient_sem": 0.001, "sliding_speed_m_s": 1e-3}
         for rest, mu in zip(rests, static, strict=True)
     )
     return RunRecord(outcome, (), starts=starts)
@@ -224,9 +224,9 @@ def test_starts_after_equal_rests_are_averaged():
     rows = [row.cells[1:] for row in figure.numbers.rows]
     # 12.7 standard errors of the mean of two, else the U95 of one start
     assert rows[:3] == [
-        ("5 N", "3", "0.51 ± 0.13", "0.4", "2"),
-        ("5 N", "10", "0.520 ± 0.002", "0.4", "2"),
-        ("5 N", "31", "0.540 ± 0.002", "0.4", "2"),
+        ("5 N", "3", "0.51 ± 0.13", "0.4", "1 mm/s", "2"),
+        ("5 N", "10", "0.520 ± 0.002", "0.4", "1 mm/s", "2"),
+        ("5 N", "31", "0.540 ± 0.002", "0.4", "1 mm/s", "2"),
     ]
     assert [row[0] for row in rows[3:]] == ["9 N"] * 3
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.table import Table
 
@@ -20,10 +20,13 @@ from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.surfaces.roughness_words import FORM, roughness_in_words
-from tribolab.records.verdict import has_unknown_zero, uncertain_mean, uncertain_words, verdict_of
-
-if TYPE_CHECKING:
-    pass
+from tribolab.records.verdict import (
+    SUSPECT,
+    has_unknown_zero,
+    uncertain_mean,
+    uncertain_words,
+    verdict_of,
+)
 
 _SHOWN, _HANDFUL = 10, 5
 _MAX_POINTS = 16  # most rows in a terminal
@@ -35,7 +38,7 @@ def verdict_line(outcome: Outcome) -> str:
     """Return the verdict in one word, and the numbers of usable runs and scans."""
     uncertain = bool(_uncertain(outcome))
     word, counts = verdict_of(outcome.runs, outcome.surfaces, uncertain=uncertain)
-    return f"{word:7s} {counts}"
+    return f"{word:7s} {counts}{', with doubts listed below' * (word == SUSPECT)}"
 
 
 def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
@@ -159,7 +162,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     """Return lines on the numbers of runs done, reused and failed, with notes on them."""
     done = [run for run in outcome.runs if run.done]
     reused = sum(run.reused for run in done)
-    line = f"{len(done)} of {Count(len(outcome.runs)):run|runs}"
+    line = f"{len(done)} of {Count(len(outcome.runs)):run|runs} read"
     if empty := sum(not run.segments for run in done):
         line += f" ({empty} without a segment of constant speed)"
     line += f", {Count(outcome.segments):segment|segments}"

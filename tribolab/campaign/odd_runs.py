@@ -35,8 +35,8 @@ def add_odd_repeats(
     ----------
     store
         Store with the records of the runs, which are updated.
-    came
-        Outcomes of the runs.
+    runs
+        The runs with their outcomes.
     curves
         Records of the measured curves.
     skip
@@ -88,7 +88,7 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
         name = runs[odd.repeat]
         side = "above" if odd.deviation > 0 else "below"
         text = (
-            f"friction is {percent(abs(odd.deviation))} {side} that of its {len(runs) - 1} "
+            f"mean friction is {percent(abs(odd.deviation))} {side} that of its {len(runs) - 1} "
             f"repeats, {usual}. The run is still included in the mean. Check mounting, zero and "
             "specimen; reject the run in review.toml if it is wrong"
         )

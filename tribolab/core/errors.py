@@ -110,6 +110,10 @@ class LacksError(ReadError):
     """Error: a raw file lacks data that the description of the instrument requires."""
 
 
+class NoNumbersError(ReadError):
+    """Error: a text file contains no table of numbers."""
+
+
 class UnitError(TribolabError):
     """Error: a quantity has no unit, an unknown unit, or one of the wrong dimension."""
 

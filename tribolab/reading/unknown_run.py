@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack
 
 from tribolab.core.aliases import PathLike
-from tribolab.core.errors import LacksError, ReadError, shown
+from tribolab.core.errors import LacksError, NoNumbersError, ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError, recognise
 from tribolab.reading.raw.opening import CrashedError, RefusedError
@@ -142,7 +142,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise ReadError(what, where=path, cure=cures.MODULUS) from error
     try:
         draft = _drafted_once(path)
-    except (RefusedError, CrashedError):
+    except (RefusedError, CrashedError, NoNumbersError):
         raise
     except (ReadError, OSError, ImportError) as reason:
         if peek(path).format != "text" or not isinstance(reason, ReadError):

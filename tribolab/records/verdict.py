@@ -12,6 +12,12 @@ if TYPE_CHECKING:
     from tribolab.records.parts import RunOutcome, SurfaceOutcome
 
 OK, SUSPECT, CHECK, FAIL = "OK", "SUSPECT", "CHECK", "FAIL"
+MEANINGS = {
+    OK: "",
+    SUSPECT: "usable, with doubts",
+    CHECK: "partly usable",
+    FAIL: "nothing usable",
+}
 _BAD = ("fail", "error", "rejected")
 _MAX_NAMED = 2  # uncertain conditions
 _UNCERTAIN = 0.25  # U95 of a mean over the mean, above which only one digit is certain

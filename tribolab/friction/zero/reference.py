@@ -317,8 +317,8 @@ def _outside_zero(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
     )
     example = _example(strokes)
     cure = (
-        f'State `zero_uncertainty` in [[run]] (e.g. "{example}": how far the signal may be from '
-        "zero without contact), or record strokes in both directions or a rest without load."
+        "Record strokes in both directions, or a rest without load; or state how far the signal "
+        f'may be from zero without contact (`zero_uncertainty = "{example}"` in campaign.toml).'
     )
     return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
 

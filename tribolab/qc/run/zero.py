@@ -52,8 +52,8 @@ ZERO_CHECKS = (
         "zero_reference",
         29,
         "Is the zero of the friction force known, and do all its sources agree?",
-        "Measure both directions at one speed, or an unloaded rest; or state "
-        "`zero_uncertainty` in [[run]].",
+        "Record strokes in both directions, or a rest without load; or state "
+        "`zero_uncertainty` in campaign.toml.",
         {},
         _zero_reference,
     ),

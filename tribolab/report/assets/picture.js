@@ -3,6 +3,9 @@
 report.Picture = (() => {
   const { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, THIRD, isOneOfMany, still, state, isDark, text, lines, force, axis, heightOf } = report.drawing;
   // Loads of one surface are shades of its colour: towards the ink for low loads, towards the paper for high ones.
+  // How many powers of ten a logarithmic axis shows.
+  const powers = ([low, high]) => Math.floor(high + 1e-9) - Math.ceil(low - 1e-9) + 1;
+
   function shaded(hue, shade) {
     if (!shade) return hue;
     const target = shade < 0 === isDark() ? 255 : 0, part = Math.abs(shade);
@@ -185,14 +188,16 @@ report.Picture = (() => {
           title: { text: kind === "x" && !last ? "" : name(what), standoff: 8, font: { size: small ? 10 : 13 } }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
           tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
           tickfont: { size: (small ? 10 : 12) / (this.isLog(kind, row) ? 1.25 : 1) }, // the library writes powers of ten a quarter larger
-          // where a single power of ten is in sight, what lies beside it is named, too
-          minorloglabels: ends && Math.floor(ends[1]) <= Math.ceil(ends[0]) ? "complete" : "none", nticks: narrow ? 5 : 8, range: ends,
+          // with a single power of ten in sight, the values beside it are labelled, too
+          minorloglabels: ends && powers(ends) < 2 ? "complete" : "none", nticks: narrow ? 5 : 8, range: ends,
         });
         const x = side("x", panel.x, this.along), y = side("y", panel.y, this.range("y", row));
         if (y.type === "category") Object.assign(y, { tickmode: "linear", dtick: 1, ticks: "" });
         if (y.type !== "log" || this.data.panels[row].y.unit === "") y.exponentformat = "none";
         // all nine of a decade do not fit beside each other
-        if (x.minorloglabels === "complete" && x.range[1] - x.range[0] > 0.5) Object.assign(x, { tickmode: "linear", tick0: 0, dtick: "D2" });
+        const few = x.type === "log" && this.along && x.range[1] - x.range[0] > 0.5 ? powers(this.along) : 0;
+        if (few === 1 || (few === 2 && !narrow)) Object.assign(x, { tickmode: "linear", tick0: 0, dtick: "D2", minorloglabels: "complete", tickfont: { size: small ? 10 : 12 } });
+        if (few === 2 && Math.min(...this.along) > -3 && Math.max(...this.along) < 4) x.exponentformat = "none";
         x.anchor = axis("y", row);
         if (row) x.matches = "x";
         if (!last && count > 1) x.showticklabels = false;

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from tribolab.core.wording import force_text, many
 from tribolab.records.judgement import check_words, is_bad, why
+from tribolab.records.models.model_words import is_described
 from tribolab.records.verdict import uncertain_mean, uncertain_words
 from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
@@ -98,6 +99,14 @@ def _notes(document: Mapping[str, Any]) -> Iterable[Doubt]:
     if any(_UNCALIBRATED in curve["uncertainty_says"] for curve in document["curves"]):
         text = "± is statistical only: no calibration uncertainty was given"
         yield Doubt("note", "", text, "State it in [uncertainty].", "#uncertainty")
+    fits = [model for model in document.get("models", ()) if model["fit"]]
+    failed = [model for model in fits if not is_described(str(model["fit"]["judgement"]))]
+    if failed:
+        curves = {curve["name"]: curve for curve in document["curves"]}
+        systems = (curves[model["curve"]] for model in failed)
+        named = dict.fromkeys(system_name(curve["surface"], curve["medium"]) for curve in systems)
+        text = f"the model does not describe {len(failed)} of {many(len(fits), 'curve')}"
+        yield Doubt("note", "", f"{text} ({'; '.join(named)})", "", "#model")
     for row in document["findings"]:
         if row["where"] == "campaign":
             yield Doubt("note", "", row["message"].rstrip("."), "", "")

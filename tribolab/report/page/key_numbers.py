@@ -43,12 +43,15 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
         *(["µ"] if single else ["Highest µ", "Speed at half µ max", "Lowest µ"]),
     ]
     heads += ["Shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
+    odd = {run["name"] for run in document["runs"] if is_odd(run)}
     rows = []
     for curve in document["curves"]:
         known = by_speed(curve["points"])
         if not known:
             continue
         name = system_name(curve["surface"], curve["medium"], curve["runs"])
+        if unlike := odd.intersection(curve["runs"]):
+            name += f" (▲ includes {', '.join(sorted(unlike))})"
         cells = [name, load_text(curve["nominal_normal_force_N"], curve["load_from"])]
         cells += [_at_speed(known[0]) + _zero(document, curve)] if single else _extremes(known)
         cells += [_stress(models.get(curve["name"]))] * bool(models)

@@ -15,10 +15,20 @@ from tribolab.report.page_figures.points import MAX_SPEED_RATIO, RunPoint, at_sp
 from tribolab.report.plain import plain_speed
 
 _ODD = "odd"
-_WORST_FIRST: tuple[str, ...] = ("failed", "rejected", "error", "rejected by hand", "kept")
-_WORST_FIRST += (_ODD, "suspect", "accepted")
 _ALL, _STEADY = "all speeds", "steady"
 _DIGITS = 6  # digits of a deviation, so that those of two repeats are equal
+
+
+STATES = {
+    "failed": "could not be read",
+    "rejected": "failed a check; not used",
+    "rejected by hand": "not used",
+    "kept": "result of an earlier analysis",
+    _ODD: "differs from its repeats; used",
+    "suspect": "a check doubts it; used",
+    "accepted": "doubted by a check, accepted by hand",
+    "done": "no doubt",
+}
 
 
 class ListedRun(NamedTuple):
@@ -55,7 +65,7 @@ def listed_runs(
     points: Mapping[str, Sequence[RunPoint]],
     traces: Mapping[str, Mapping[str, Any]],
 ) -> RunList:
-    """Return all runs: first by severity of their state, then by deviation from repeats.
+    """Return all runs: first by severity of their state, then by the deviation shown.
 
     Parameters
     ----------
@@ -87,7 +97,7 @@ def listed_runs(
         )
         spark = spark_path(traces[name]) if name in traces else ""
         rows.append(ListedRun(run, place, _state(run), _reason(run, common), values, spark))
-    order = sorted(rows, key=lambda row: _rank(row, off[row.run["name"]]))
+    order = sorted(rows, key=lambda row: _rank(row, off[row.run["name"]][shown]))
     ranked = tuple(row._replace(worst=rank) for rank, row in enumerate(order))
     return RunList(ranked, shown_as, shown)
 
@@ -105,10 +115,8 @@ def _state(run: Mapping[str, Any]) -> str:
     return _ODD if is_odd(run) and word in ("done", "suspect") else word
 
 
-def _rank(row: ListedRun, off: Sequence[float | None]) -> tuple[int, float]:
-    known = [abs(value) for value in off if value is not None]
-    grave = _WORST_FIRST.index(row.state) if row.state in _WORST_FIRST else len(_WORST_FIRST)
-    return grave, -round(statistics.median(known), _DIGITS) if known else 0.0
+def _rank(row: ListedRun, off: float | None) -> tuple[int, float]:
+    return list(STATES).index(row.state), -round(abs(off or 0.0), _DIGITS)
 
 
 def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:

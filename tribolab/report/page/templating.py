@@ -30,9 +30,11 @@ from tribolab.records.parts import Row, number_of
 from tribolab.records.runs import trends
 from tribolab.records.surfaces.hurst_words import hurst_verdict, is_steep
 from tribolab.records.surfaces.roughness_words import form_in_words, roughness_u95
+from tribolab.records.verdict import MEANINGS
 from tribolab.report.document.document import state_of
 from tribolab.report.page.glossary import HEADS, TERMS
 from tribolab.report.page.in_words import budget_shares, conditions, oscillation_text
+from tribolab.report.page.run_list import STATES
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
 
@@ -197,6 +199,8 @@ def environment(folder: Path) -> jinja2.Environment:
         "form_in_words": form_in_words,
         "hurst_verdict": hurst_verdict,
         "HEADS": HEADS,
+        "MEANINGS": MEANINGS,
+        "STATES": STATES,
         "explained": explained,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,

@@ -17,8 +17,9 @@ from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.starts import starts_of
 from tribolab.records.wording import error_text
 from tribolab.report.page_figures.curves import system_name
+from tribolab.report.plain import plain_speed
 
-_HEADS = "Condition", "Load", "Hold time (s)", "Static µ", "Kinetic µ", "Starts"
+_HEADS = "Condition", "Load", "Hold time (s)", "Static µ", "Kinetic µ", "Speed", "Starts"
 _SAME_REST = 1.05  # largest ratio of rest times that count as equal
 
 
@@ -96,25 +97,31 @@ def _system(start: _Start) -> tuple[str, str, float]:
     return start.outcome.surface, start.outcome.medium, start.outcome.normal_force or 0.0
 
 
-def _mean_row(group: Sequence[_Start]) -> KeyRow:
-    """Return the means of starts after the same rest.
+def _mean_of_starts(group: Sequence[_Start], name: str) -> str:
+    """Return the mean of a quantity ± U95, which is at least that of one start.
 
-    The zero is common to the repeats: their U95 is at least that of one start.
+    Starts share the zero, so that averaging does not reduce its error.
     """
+    values, own = (_known(number_of(s.row, name + end) for s in group) for end in ("", "_sem"))
+    if not values.size:
+        return "–"
+    errors = [NORMAL * float(np.median(own))] if own.size else []
+    if values.size > 1:
+        errors.append(mean_of_repeats(values, np.full(values.size, np.nan)).u95)
+    return error_text(float(values.mean()), max(errors, default=None))
+
+
+def _mean_row(group: Sequence[_Start]) -> KeyRow:
+    """Return the means of starts after the same rest."""
     first = group[0].outcome
-    static, kinetic, own = (
-        _known(number_of(start.row, f"{name}friction_coefficient{end}") for start in group)
-        for name, end in (("static_", ""), ("", ""), ("static_", "_sem"))
-    )
-    u95 = NORMAL * float(np.median(own)) if own.size else 0.0
-    if static.size > 1:
-        u95 = max(u95, mean_of_repeats(static, np.full(static.size, np.nan)).u95)
+    speeds = _known(number_of(start.row, "sliding_speed_m_s") for start in group)
     cells = (
         system_name(first.surface, first.medium, [start.outcome.name for start in group]),
         load_text(first.normal_force, first.load_from),
         number(statistics.fmean(start.rest for start in group)),
-        error_text(float(static.mean()), u95) if static.size else "–",
-        number(float(kinetic.mean())) if kinetic.size else "–",
+        _mean_of_starts(group, "static_friction_coefficient"),
+        _mean_of_starts(group, "friction_coefficient"),
+        plain_speed(float(speeds.mean())) if speeds.size else "–",
         str(len(group)),
     )
     return KeyRow(cells, first.surface, first.medium, first.normal_force)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.core.errors import ReadError, shown
+from tribolab.core.errors import NoNumbersError, ReadError, shown
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
 from tribolab.reading.numbers import escaped, numbers_in
 from tribolab.reading.raw import limits
@@ -205,9 +205,11 @@ def find_layout(file: File) -> Layout:
     _refuse_wide(file, lines)
     grammar = find_grammar(lines)
     if grammar is None:
-        raise ReadError(
-            f"{file.path}: the file contains no table of numbers; a dialect describes text with "
-            "at least one row of numbers"
+        raise NoNumbersError(
+            "the file contains no table of numbers",
+            where=file.path,
+            cure="leave it out if it is no measurement; else a Python reader can read it "
+            "(raw_data_schema/README.md)",
         )
     blocks = find_blocks(lines, grammar)
     main, others = main_blocks(blocks)
