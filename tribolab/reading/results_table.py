@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import re
+from io import StringIO
 from itertools import islice
 from typing import NamedTuple
 
-from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label, role_of
+from tribolab.reading.lexicon.lexicon import Word, known_words, names, normalise_label, role_of
 from tribolab.reading.numbers import PLAIN_NUMBER
 
 _HEAD_LINES = 40  # above such a table
@@ -103,7 +105,8 @@ def find_other_test(text: str) -> str:
 
 def _first_lines(text: str, count: int) -> list[str]:
     """Return the first lines that are not blank, without the blanks around them."""
-    return list(islice((bare for line in text.splitlines() if (bare := line.strip())), count))
+    lines = (line.strip() for line in StringIO(text, newline=None))
+    return list(islice(filter(None, lines), count))
 
 
 def _has_moduli(labels: list[str], between: re.Pattern[str], lines: list[str]) -> bool:
@@ -153,12 +156,17 @@ def _results(labels: list[str]) -> list[str]:
     return [*loads, *peaks] if peaks and loads and not times else []
 
 
+@functools.lru_cache(maxsize=1024)
 def _is(label: str, quantity: str) -> bool:
-    words = [*known_words("run"), *known_words("rheology")]
-    [word] = [word for word in words if word.quantity == quantity]
+    word = _words()[quantity]
     name = normalise_label(label)
     bare = normalise_label(re.split(r"\s*[\[(]", label)[0])
     return bare in word.symbols or any(stem in name for stem in word.stems)
+
+
+@functools.cache
+def _words() -> dict[str, Word]:
+    return {word.quantity: word for of in ("run", "rheology") for word in known_words(of)}
 
 
 def _rows(lines: list[str], between: re.Pattern[str], width: int) -> int:

@@ -50,13 +50,16 @@ def take_isolated(height: np.ndarray) -> list[Marked]:
         counts = [int((known == end).sum()) for end in ends]
         if sum(counts) > MAX_SHARE_OF_MARK.value * known.size:
             continue
-        rest = known[~np.isin(known, ends)]
-        if np.unique(rest).size < MIN_OTHER_HEIGHTS.value:
+        rest = known[np.all([known != end for end in ends], axis=0)]
+        if not rest.size:
             continue
         bottom, top = float(rest.min()), float(rest.max())
-        if all(
-            max(bottom - end, end - top) > _min_distance(end, count) * (top - bottom)
-            for end, count in zip(ends, counts, strict=True)
+        if (
+            all(
+                max(bottom - end, end - top) > _min_distance(end, count) * (top - bottom)
+                for end, count in zip(ends, counts, strict=True)
+            )
+            and np.unique(rest).size >= MIN_OTHER_HEIGHTS.value
         ):
             height[np.isin(height, ends)] = np.nan
             return [Marked(end, count) for end, count in zip(ends, counts, strict=True)]

@@ -32,13 +32,16 @@ def refuse_endless(path: Path, head: bytes, size: int) -> None:
         longer file has no row of numbers.
     """
     letters = np.frombuffer(head, dtype=np.uint8)
-    between = _BETWEEN[letters]
-    before = np.concatenate(([True], between[:-1]))
-    starts = np.flatnonzero(before & ~between)  # of cells
     ends = np.flatnonzero(letters == ord("\n"))
     ends = ends if ends.size else np.flatnonzero(letters == ord("\r"))
-    cells = np.bincount(np.searchsorted(ends, starts), minlength=1)
-    wide = cells[cells > limits.COLUMNS_OF_TEXT.value]
+    longest = int(np.diff(ends, prepend=0, append=letters.size).max())
+    wide = np.array([], int)
+    if longest > 2 * limits.COLUMNS_OF_TEXT.value:  # a cell takes two bytes
+        between = _BETWEEN[letters]
+        before = np.concatenate(([True], between[:-1]))
+        starts = np.flatnonzero(before & ~between)  # of cells
+        cells = np.bincount(np.searchsorted(ends, starts), minlength=1)
+        wide = cells[cells > limits.COLUMNS_OF_TEXT.value]
     if wide.size > 1 or (wide.size and not ends.size and len(head) < size):
         raise RefusedError(
             f"some {wide[0]} columns are more than a measurement or a map has "
