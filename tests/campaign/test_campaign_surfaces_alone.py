@@ -32,7 +32,7 @@ def test_surfaces_without_runs_have_their_report(tmp_path):
     command = ["run", str(campaign), "-j", "1", "-q"]
     done = CliRunner().invoke(app, command)
     assert done.exit_code == 0, done.output
-    assert "1 of 1 surface: spectrum, contact, adhesion" in done.output.splitlines()
+    assert "computed for 1 of 1 surface: spectrum, contact, adhesion" in done.output.splitlines()
     results = tmp_path / "c" / "results"
     report = json.loads((results / "report.json").read_text("utf-8"))
     assert report["verdict"]["text"] == "1 scan, 1 of 1 surface usable"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
@@ -19,14 +19,19 @@ from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecor
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
 from tribolab.records.runs.run_record import RunRecord
+from tribolab.records.runs.running_in_record import RunningIn, mean_of_steady, steady_levels
 from tribolab.records.surfaces.roughness_words import FORM, roughness_in_words
 from tribolab.records.verdict import (
     SUSPECT,
+    furthest_repeat,
     has_unknown_zero,
     uncertain_mean,
     uncertain_words,
     verdict_of,
 )
+
+if TYPE_CHECKING:
+    from tribolab.friction.points.mean_of_repeats import Mean
 
 _SHOWN, _HANDFUL = 10, 5
 _MAX_POINTS = 16  # most rows in a terminal
@@ -43,16 +48,16 @@ def verdict_line(outcome: Outcome) -> str:
 
 def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
     """Return the conditions whose repeats leave their mean uncertain: U95 over mean, and name."""
-    return [
-        (
-            share,
-            ", ".join(
-                filter(None, (curve.surface, curve.medium, load_text(curve.normal_force, "")))
-            ),
-        )
-        for curve in outcome.curves
-        if curve.done and (share := uncertain_mean(_points(curve, outcome))) is not None
-    ]
+    found = []
+    for curve in outcome.curves:
+        entry = outcome.store.get("curve", curve.name, CurveRecord) if curve.done else None
+        if entry and (share := uncertain_mean(entry.record.points)) is not None:
+            load = load_text(curve.normal_force, "")
+            name = ", ".join(filter(None, (curve.surface, curve.medium, load)))
+            levels = dict(zip(curve.run_names, entry.record.levels, strict=False))
+            levels |= steady_levels(_running_in(curve, outcome))
+            found.append((share, name + furthest_repeat(levels)))
+    return found
 
 
 def outcome_table(outcome: Outcome) -> Table:
@@ -115,11 +120,16 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
     if not speed or not mu:
         return _segment_cells(curve, outcome)
     segments = sum(int(row.get("segments") or 0) for row in points)
+    if len(points) == 1 and (steady := _steady(curve, outcome)) is not None:
+        friction = f"{steady.mean:.3f} steady"
+        points = [dict(points[0]) | {"friction_coefficient_U95": steady.u95}]
+    else:
+        friction = range_of(f"{min(mu):.3f}", f"{max(mu):.3f}")
     return (
         str(len(curve.run_names)),
         str(segments) if "segments" in points[0] else "",
         f"{range_of(f'{min(speed):.3g}', f'{max(speed):.3g}')} m/s",
-        range_of(f"{min(mu):.3f}", f"{max(mu):.3f}"),
+        friction,
         _largest_error(points, with_zero=not _zero_unknown(curve, outcome)),
     )
 
@@ -135,7 +145,23 @@ def _largest_error(points: Sequence[Row], with_zero: bool = True) -> str:
     if all(several) or not any(several):
         source = "between runs" if several[0] else "within the run"
     source = source if with_zero else "zero unknown"
-    return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} {source}"
+    return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} ({source})"
+
+
+def _steady(curve: CurveOutcome, outcome: Outcome) -> Mean | None:
+    """Return the mean steady friction of a few repeats that run in; else None."""
+    rows = _running_in(curve, outcome)
+    settled = [row for each in rows.values() for row in each]
+    if not steady_levels(rows) or not any(row.changes for row in settled):
+        return None
+    return mean_of_steady(settled)
+
+
+def _running_in(curve: CurveOutcome, outcome: Outcome) -> dict[str, tuple[RunningIn, ...]]:
+    """Return the running-in of a few runs of a curve, by name."""
+    few = curve.run_names if len(curve.run_names) <= _SHOWN else ()
+    entries = {name: outcome.store.get("run", name, RunRecord) for name in few}
+    return {name: entry.record.facts.running_in for name, entry in entries.items() if entry}
 
 
 def _zero_unknown(curve: CurveOutcome, outcome: Outcome) -> bool:
@@ -194,7 +220,8 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:
         computed = sum(surface.done for surface in known)
-        lines.append(f"{computed} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
+        of = f"{computed} of {Count(len(known)):surface|surfaces}"
+        lines.append(f"computed for {of}: {_computed(outcome)}")
         lines += _roughness(outcome)
         few = known if len(known) <= _HANDFUL else ()
         lines += [f"{surface.name}: {text}" for surface in few for text in _doubts(surface)]
@@ -284,11 +311,14 @@ def _reasons_of_run(run: RunOutcome, outcome: Outcome) -> str:
 def _reasons(rows: Iterable[Mapping[str, Any]], status: str) -> str:
     """Return the checks with this status, and their messages."""
     mine = [row for row in rows if row["status"] == status and not row.get("decision")]
-    texts = [
-        (f"{row['check'].replace('_', ' ')}: {row.get('scan', '')} {row['message']}")
-        for row in mine
-    ]
+    texts = [f"{row['check'].replace('_', ' ')}: {_of_scan(row)}{row['message']}" for row in mine]
     return "".join(f": {' '.join(text.split())}" for text in ["; ".join(texts)] if text)
+
+
+def _of_scan(row: Mapping[str, Any]) -> str:
+    """Return the scan of a check, if its message does not begin with it."""
+    scan = row.get("scan", "")
+    return f"{scan} " if scan and not row["message"].startswith(scan) else ""
 
 
 def _computed(outcome: Outcome) -> str:
@@ -317,7 +347,7 @@ def _left_out(outcome: Outcome) -> list[str]:
         if entry and entry.record.rows and entry.record.rows.not_in_model:
             effects = entry.record.rows.not_in_model
             names = ", ".join(str(effect["effect"]) for effect in effects)
-            return [f"not in the model: {names} (sizes in the report)"]
+            return [f"not in the model: {names} (estimated sizes in the report)"]
     return []
 
 

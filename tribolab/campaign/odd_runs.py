@@ -13,14 +13,16 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.core.wording import percent
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.runs.run_record import CheckRow, RunRecord
+from tribolab.records.runs.running_in_record import steady_levels
 
 REPEATS = "repeats"
 _VARIABLE = "friction_coefficient"
+_LEAST_SHOWN = 1e-4  # smallest scatter that is shown
 _BY_HAND = ("accepted", "rejected")
 
 
 class _Condition(NamedTuple):
-    """Names of the repeats of one condition, and their friction levels over the mean of all [1]."""
+    """Names of the repeats of one condition, and their friction: relative, or steady [1]."""
 
     runs: tuple[str, ...]
     levels: np.ndarray
@@ -42,18 +44,22 @@ def add_odd_repeats(
     skip
         Whether the check is switched off.
     """
-    conditions = [] if skip else [c for c in map(_condition, curves) if c is not None]
+    found = () if skip else (_condition(store, curve) for curve in curves)
+    conditions = [condition for condition in found if condition is not None]
     checks = _verdicts(conditions)
     return [_update_run(store, run, place, checks) for place, run in enumerate(runs)]
 
 
-def _condition(curve: CurveRecord) -> _Condition | None:
+def _condition(store: Store, curve: CurveRecord) -> _Condition | None:
     pairs = zip(curve.outcome.run_names, curve.levels, strict=False)
-    known = [(name, level) for name, level in pairs if level is not None and level > 0]
-    if len(known) < 2:
+    levels = {name: level for name, level in pairs if level is not None and level > 0}
+    if len(levels) < 2:
         return None
-    names, levels = zip(*known, strict=True)
-    return _Condition(names, np.array(levels, dtype=float))
+    if len(curve.points) == 1:
+        entries = {name: store.get("run", name, RunRecord) for name in levels}
+        rows = {name: entry.record.facts.running_in for name, entry in entries.items() if entry}
+        levels = steady_levels(rows) or levels
+    return _Condition(tuple(levels), np.array(list(levels.values()), dtype=float))
 
 
 def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
@@ -74,8 +80,9 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
             checks[name] = _row("skipped", text) if alone else _row("pass", sound)
     for odd in odd_repeats([np.log(condition.levels) for condition in conditions]):
         runs = conditions[odd.condition].runs
-        scatter = percent(odd.repeatability)
-        usual = f"while other repeats scatter by {scatter} (standard deviation)"
+        scatter = percent(max(odd.repeatability, _LEAST_SHOWN))
+        least = "less than " * (odd.repeatability < _LEAST_SHOWN)
+        usual = f"while repeats otherwise differ by {least}{scatter} (standard deviation)"
         if odd.repeat < 0:
             for name, other in (runs, runs[::-1]):
                 text = (
@@ -88,7 +95,7 @@ def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
         name = runs[odd.repeat]
         side = "above" if odd.deviation > 0 else "below"
         text = (
-            f"mean friction is {percent(abs(odd.deviation))} {side} that of its {len(runs) - 1} "
+            f"friction is {percent(abs(odd.deviation))} {side} that of its {len(runs) - 1} "
             f"repeats, {usual}. The run is still included in the mean. Check mounting, zero and "
             "specimen; reject the run in review.toml if it is wrong"
         )

@@ -145,6 +145,16 @@ def duration(seconds: float | None) -> str:
     raise AssertionError("unreachable: every finite number is below infinity")
 
 
+def signed_percent(share: float | None) -> str:
+    """Return a deviation in percent with its sign, with one decimal below ten percent."""
+    if share is None:
+        return ""
+    if abs(share) < 0.0005:  # neither +0.0 nor -0.0
+        return "0.0 %"
+    text = f"{100 * share:+.{1 if abs(share) < 0.0995 else 0}f} %"
+    return text.replace("-", MINUS)
+
+
 def percent(share: float | None) -> str:
     """Return a share as text, e.g. ``"2.1 %"``."""
     if share is None or not math.isfinite(share):

@@ -66,8 +66,11 @@ def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
     along = [x for panel, series in panels for x in _x_values(series, panel.x)]
     x = replace(alike.x, include=_ends(along, alike.x))
     seen = _scale(x, iter(()), level=False)
-    up = [y for panel, series in panels for y in _y_values(series, panel.y, seen)]
-    return Panel(x, replace(alike.y, include=_ends(up, alike.y)))
+    ends = _ends([y for p, series in panels for y in _y_values(series, p.y, seen)], alike.y)
+    if ends and alike.y.log and ends[1] < 10 * ends[0]:  # else there may be no tick below the data
+        power = 10.0 ** math.floor(math.log10(ends[0]))
+        ends = max(m * power for m in (1, 1.5, 2, 3, 5) if m * power <= ends[0]), ends[1]
+    return Panel(x, replace(alike.y, include=ends))
 
 
 def _ends(values: Sequence[float], axis: Axis) -> tuple[float, ...]:

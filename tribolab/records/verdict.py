@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tribolab.core.wording import many, percent
+from tribolab.core.wording import many, percent, signed_percent
 from tribolab.friction.segments.limits import RAMP_SHARE
 
 if TYPE_CHECKING:
@@ -73,13 +74,29 @@ def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
     return usual if usual > _UNCERTAIN else None
 
 
+def furthest_repeat(levels: Mapping[str, float | None]) -> str:
+    """Return which of several repeats differs most from the median of all; "" for two.
+
+    Examples
+    --------
+    >>> furthest_repeat({"a": 0.31, "b": 0.33, "c": 0.42})
+    ' (c differs most: +27 % from the median)'
+    """
+    known = {name: level for name, level in levels.items() if level}
+    if len(known) < 3:
+        return ""
+    middle = statistics.median(known.values())
+    name = max(known, key=lambda name: abs(known[name] / middle - 1))
+    return f" ({name} differs most: {signed_percent(known[name] / middle - 1)} from the median)"
+
+
 def uncertain_words(conditions: Sequence[tuple[float, str]]) -> str:
     """Return a doubt about conditions, each with its result of `uncertain_mean` and its name."""
     worst = sorted(conditions, reverse=True)
     named = "; ".join(name for _, name in worst[:_MAX_NAMED])
     more = f"; and {len(worst) - _MAX_NAMED} more" if len(worst) > _MAX_NAMED else ""
     limit = percent(_UNCERTAIN)
-    return f"repeats scatter so much that U95 of their mean exceeds {limit} of it: {named}{more}"
+    return f"the repeats disagree: U95 of their mean exceeds {limit} of the mean: {named}{more}"
 
 
 def verdict_of(

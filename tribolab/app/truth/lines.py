@@ -31,7 +31,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
         text = ", ".join(f"{words[name]} {off[name]:.1f} %" for name in words if name in off)
         lines.append(
             f"surfaces, from their scans: at most {text} off the true values; "
-            f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
+            f"{rows.within_bounds.sum()} of {len(rows)} values within their stated bounds"
         )
     fits, lost = compared.shear_stress, _not_described(results)
     if len(fits):

@@ -152,18 +152,15 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
 
 def _trim(label: str, message: str) -> str:
     """Return a message without the file name, which the label already contains."""
-    name, colon, rest = message.partition(": ")
-    return rest if colon and label.endswith(name) else message
+    name = label.rpartition("/")[2]
+    return message.removeprefix(f"{name} has ").removeprefix(f"{name}: ")
 
 
 def _objections(label: str, found: Findings) -> list[Finding]:
     return [
         Finding(
             "note" if row["status"] == "pass" else row["status"],
-            f"scan {label}: {row['check']}: {_trim(label, row['message'])}. {row['cure']}".strip(
-                ". "
-            )
-            + ".",
+            f"scan {label}: {_trim(label, row['message'])}. {row['cure']}".strip(". ") + ".",
             row["check"],
         )
         for row in found.rows
@@ -331,6 +328,7 @@ def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
     radius = flat.attrs["form_radius_m"]
     return (
         f"a circle of R = {number(radius)} m was removed; it may be part shape or part of the "
-        f"waviness. Pq is {number(1e6 * without)} um after removal, {number(1e6 * with_it)} um if "
+        f"waviness. The unfiltered Pq is {number(1e6 * without)} µm without it, "
+        f"{number(1e6 * with_it)} µm if "
         'only the tilt is removed (form = "tilt" in [roughness], for a flat part)'
     )

@@ -317,8 +317,8 @@ def _outside_zero(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
     )
     example = _example(strokes)
     cure = (
-        "Record strokes in both directions, or a rest without load; or state how far the signal "
-        f'may be from zero without contact (`zero_uncertainty = "{example}"` in campaign.toml).'
+        "Record strokes in both directions, or a rest without load. Or state in campaign.toml how "
+        f'far the signal may be from zero without contact (e.g. `zero_uncertainty = "{example}"`).'
     )
     return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
 

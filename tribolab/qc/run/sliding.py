@@ -99,10 +99,7 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     why = subject.missing_segment_reason
     if why and subject.is_ramp:
         text = "speed-ramp test: the curve includes the zero offset of the friction force"
-        cure = (
-            "Record a rest without load, or ramps in both directions, for the zero. To treat slow "
-            "ramps as constant speed, raise `limits.segments.drift` in [qc]."
-        )
+        cure = "Record a rest without load, or ramps in both directions, for the zero."
         return [Result("suspect", "", text, cure=cure)]
     if why:
         return [Result("suspect", "", why)]

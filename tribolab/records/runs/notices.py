@@ -116,9 +116,10 @@ def notices_of(
     if (share := about.stroke_middle) > 0 and segments.sizes["segment"]:
         whole, used = times_of_strokes(segments)
         strokes = many(segments.sizes["segment"], "stroke")
-        text = f"everything outside the middle {percent(share)} of each of {strokes}"
-        slow = " (at the ends the contact is slow)" if (whole - used) / whole > 1 - share else ""
-        say("note", STROKE_ENDS, f"{text}: {duration(whole - used)} of {duration(whole)}{slow}")
+        text = f"everything outside the middle {percent(share)} of the length of {strokes}"
+        slow = ", as it is slow at the ends" if (whole - used) / whole > 1 - share else ""
+        time = f"{duration(whole - used)} of {duration(whole)}"
+        say("note", STROKE_ENDS, f"{text} ({time} in time{slow})")
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
         say("note", LEFT_OUT, f"{entry.reason}: {text}")

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
+
+from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import number
 from tribolab.friction.running_in.kinds import (
     CYCLES,
@@ -18,6 +22,9 @@ from tribolab.friction.running_in.kinds import (
 from tribolab.records.annotations import Natural, means, one_of
 from tribolab.records.parts import Row
 from tribolab.records.wording import error_text
+
+if TYPE_CHECKING:
+    from tribolab.friction.points.mean_of_repeats import Mean
 
 _MATTERS = 0.02  # change of friction over its mean; smaller than the scatter of repeats
 _COUNTED = "unit of averaging: cycles, single strokes, or intervals of equal duration"
@@ -119,12 +126,43 @@ class RunningIn:
                 f"{number(last or 0.0)}"
             )
         mean = number(self.mean_friction_coefficient or 0.0)
-        cure = 'To exclude that part, state steady = "auto" in [segments]'
+        cure = 'To exclude the running-in from all means, set steady = "auto" in [segments]'
         return f"{' '.join(parts)}; the mean over the whole run is {mean}. {cure}"
 
     def row(self) -> Row:
         """Return the running-in as a row of a table."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+
+def steady_levels(runs: Mapping[str, Sequence[RunningIn]]) -> dict[str, float]:
+    """Return the steady friction of runs at one speed, by name; {} unless all become steady."""
+    levels = {}
+    for name, rows in runs.items():
+        steady = rows[0].steady_friction_coefficient if len(rows) == 1 else None
+        if steady is None or steady <= 0:
+            return {}
+        levels[name] = steady
+    return levels
+
+
+def mean_of_steady(rows: Sequence[RunningIn]) -> Mean | None:
+    """Return the mean steady friction of repeats; None unless every run becomes steady.
+
+    U95 is that of the scatter between repeats, and at least that within the runs.
+    """
+    # imported late for a quick start
+    from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats
+
+    levels = [row.steady_friction_coefficient for row in rows]
+    if None in levels or not levels:
+        return None
+    values = np.array(levels, float)
+    own = [row.steady_friction_coefficient_U95 or 0.0 for row in rows]
+    within = float(np.linalg.norm(own)) / values.size  # repeats count equally
+    if values.size < 2:
+        return Mean(float(values[0]), within / NORMAL, within)
+    found = mean_of_repeats(values, np.full(values.size, np.nan))
+    return found._replace(u95=max(found.u95, within))
 
 
 def _verb(before: float | None, after: float | None) -> str:

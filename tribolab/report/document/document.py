@@ -17,7 +17,7 @@ from tribolab.core.provenance import sha256_of_file
 from tribolab.core.untyped import Json
 from tribolab.core.wording import load_label, many, span
 from tribolab.friction.running_in.kinds import NONE
-from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
+from tribolab.records.judgement import THRESHOLDS, is_bad, is_odd, status_word
 from tribolab.records.parts import Row
 from tribolab.records.verdict import is_ramp, uncertain_mean
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
@@ -165,10 +165,15 @@ def verdict(
     if done and not (failed or rejected or empty or rejected_scans or kept or lost_decisions):
         status = "complete"
     doubtful = sum(status_word(run) == "suspect" for run in runs)
+    odd = sum(status_word(run) == "suspect" and is_odd(run) for run in runs)
+    doubts = [f"{odd} odd"] * bool(odd) + [f"{doubtful - odd} suspect"] * (doubtful > odd)
+    ramps = sum(map(is_ramp, sound))
     parts = [
         f"{len(sound)} of {many(len(runs), 'run')} usable"
-        + f" ({doubtful} suspect)" * bool(doubtful)
+        + f" ({', '.join(doubts)})" * bool(doubts)
     ]
+    if ramps:
+        parts.append(many(ramps, "speed ramp"))
     if failed:
         parts.append(f"{failed} failed")
     if empty:
@@ -183,7 +188,8 @@ def verdict(
     if lost_decisions:
         parts.append(f"{many(lost_decisions, 'decision')} on no run")
     out = f" ({segments_rejected} rejected by hand)" if segments_rejected else ""
-    parts.append(f"{many(segments, 'segment')}{out}")
+    if segments or not ramps:
+        parts.append(f"{many(segments, 'segment')}{out}")
     ranges = {}
     for name in ("friction_coefficient", "half_loop", "friction_force"):
         if name in quantities:

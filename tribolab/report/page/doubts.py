@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from tribolab.core.wording import force_text, many
 from tribolab.records.judgement import check_words, is_bad, why
 from tribolab.records.models.model_words import is_described
-from tribolab.records.verdict import uncertain_mean, uncertain_words
+from tribolab.records.verdict import furthest_repeat, uncertain_mean, uncertain_words
 from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
 
@@ -45,7 +45,7 @@ def doubts(document: Mapping[str, Any]) -> list[Doubt]:
         Content of report.json; short entries of the runs suffice.
     """
     found = [*_of_findings(document), *_missing_curves(document)]
-    found += _uncertain_means(document["curves"])
+    found += _uncertain_means(document)
     found.sort(key=lambda doubt: _GRAVE.index(doubt.level))
     return [*_left_out(document["runs"]), *_odd_runs(document["runs"]), *found, *_notes(document)]
 
@@ -82,11 +82,16 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
         )
 
 
-def _uncertain_means(curves: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
+def _uncertain_means(document: Mapping[str, Any]) -> Iterable[Doubt]:
     """Yield the conditions whose repeats scatter so much that their mean is uncertain."""
+    levels = {run["name"]: _level(run) for run in document["runs"]}
     wide = [
-        (share, f"{system_name(curve['surface'], curve['medium'], curve['runs'])}, {load}")
-        for curve in curves
+        (
+            share,
+            f"{system_name(curve['surface'], curve['medium'], curve['runs'])}, {load}"
+            + furthest_repeat({name: levels[name] for name in curve["runs"]}),
+        )
+        for curve in document["curves"]
         if (share := uncertain_mean(curve["points"])) is not None
         and (load := force_text(curve["nominal_normal_force_N"]))
     ]
@@ -95,10 +100,21 @@ def _uncertain_means(curves: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
         yield Doubt("suspect", "", uncertain_words(wide), cure, "#runs")
 
 
+def _level(run: Mapping[str, Any]) -> float | None:
+    """Return the steady friction of a run at one speed, else its first highlight."""
+    steady = [row["steady_friction_coefficient"] for row in run.get("running_in", ())]
+    highlights = [found["value"] for found in run.get("highlights", ())]
+    return next(
+        (level for level in (steady if len(steady) == 1 else []) + highlights if level), None
+    )
+
+
 def _notes(document: Mapping[str, Any]) -> Iterable[Doubt]:
     if any(_UNCALIBRATED in curve["uncertainty_says"] for curve in document["curves"]):
         text = "± is statistical only: no calibration uncertainty was given"
-        yield Doubt("note", "", text, "State it in [uncertainty].", "#uncertainty")
+        yield Doubt(
+            "note", "", text, "Add it under [uncertainty] in campaign.toml.", "#uncertainty"
+        )
     fits = [model for model in document.get("models", ()) if model["fit"]]
     failed = [model for model in fits if not is_described(str(model["fit"]["judgement"]))]
     if failed:

@@ -127,8 +127,10 @@ HEADS: dict[str, str] = {
     "(by a check or a person): excluded from the curves; failed: could not be read or analysed.",
     "Dev.": "Deviation from the median of the usable repeats at the chosen speed.",
     "Running-in distance": "Distance after which friction is steady.",
-    "Steady µ": "Mean friction coefficient ± U95 (within the run) of the steady part.",
-    "Speed at half µ max": "Speed at which µ drops to half its maximum.",
+    "Steady µ ± U95": "Mean friction coefficient of the steady part; U95 within the run, or "
+    "between repeats.",
+    "Speed at half of highest µ": "Speed at which µ drops to half its highest value.",
+    "Fitted shear stress (MPa)": "Shear stress of the fitted model, with its 95 % interval.",
     "Noise": GLOSSARY["Noise"],
     "Drift": GLOSSARY["Drift"],
     "Left out": GLOSSARY["Left out"],

@@ -6,16 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
-import numpy as np
-
 from tribolab.core.coverage import NORMAL
 from tribolab.core.wording import load_text
 from tribolab.figures.spec import KeyRow, KeyTable
-from tribolab.friction.points.mean_of_repeats import mean_of_repeats
 from tribolab.records.judgement import is_bad, is_odd
 from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
-from tribolab.records.runs.running_in_record import RunningIn, length_text
+from tribolab.records.runs.running_in_record import RunningIn, length_text, mean_of_steady
 from tribolab.records.surfaces.roughness_words import roughness_u95
 from tribolab.records.verdict import has_unknown_zero
 from tribolab.records.wording import error_text
@@ -40,9 +37,9 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
     heads = [
         "Condition",
         "Load",
-        *(["µ"] if single else ["Highest µ", "Speed at half µ max", "Lowest µ"]),
+        *(["µ ± U95"] if single else ["Highest µ ± U95", "Speed at half of highest µ", "Lowest µ"]),
     ]
-    heads += ["Shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
+    heads += ["Fitted shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
     odd = {run["name"] for run in document["runs"] if is_odd(run)}
     rows = []
     for curve in document["curves"]:
@@ -95,56 +92,52 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
 def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
     """Return running-in and steady friction of each run at one speed; None without such runs.
 
-    The last rows are the means of repeats, with the U95 of the scatter between them, also without
+    The first rows are the means of repeats, with the U95 of the scatter between them, also without
     those that contradict the others.
     """
     rows = []
-    repeats: dict[tuple[str, str, float | None, str], dict[str, tuple[float, float]]] = {}
+    repeats: dict[tuple[str, str, float | None, str], dict[str, RunningIn]] = {}
     odd = {run["name"] for run in document["runs"] if is_odd(run)}
     for run in document["runs"]:
         if len(run["running_in"]) != 1:
             continue
-        (settled,) = run["running_in"]
-        finished = settled["steady_friction_coefficient"] is not None
-        begin, end = (length_text(settled[name]) for name in ("start_m", "end_m"))
-        over = "not finished" if not finished else begin if settled["start_m"] else "none"
-        cells = [
+        settled = RunningIn(**{each.name: run["running_in"][0][each.name] for each in _FIELDS})
+        finished = settled.steady_friction_coefficient is not None
+        begin, end = map(length_text, (settled.start_m, settled.end_m))
+        over = "not finished" if not finished else begin if settled.start_m else "none"
+        steady = error_text(
+            settled.steady_friction_coefficient, settled.steady_friction_coefficient_U95
+        )
+        # a mean of friction that changes depends on the length of the run
+        mean = error_text(settled.mean_friction_coefficient, settled.error_of_mean)
+        cells = (
             run["name"],
-            *(_mean(settled, name) if finished or name == "mean" else "–" for name in _MEANS),
-            f"{over} of {end}" if finished and settled["start_m"] else over,
-            "steady after it" if finished and settled["start_m"] else settled["verdict"],
-            plain_speed(settled["sliding_speed_m_s"]),
-        ]
+            steady if finished else "–",
+            mean,
+            f"{over} of {end}" if finished and settled.start_m else over,
+            "steady after it" if finished and settled.start_m else settled.verdict,
+            plain_speed(settled.sliding_speed_m_s),
+        )
         condition = run["surface"], run["medium"], run["nominal_normal_force_N"]
-        rows.append(KeyRow(tuple(cells), *condition))
+        rows.append(KeyRow(cells, *condition))
         if finished and not is_bad(run):
-            level = settled["steady_friction_coefficient"]
-            own = settled["steady_friction_coefficient_U95"] or 0.0
-            repeats.setdefault((*condition, cells[-1]), {})[run["name"]] = level, own
-    for (surface, medium, load, speed), levels in repeats.items():
-        without = ", ".join(name for name in levels if name in odd)
-        agreeing = {name: known for name, known in levels.items() if name not in odd}
-        for used, end in ((levels, ""), (agreeing, f", without {without}")):
-            if len(used) > 1 and (without or used is levels):
-                values, own = np.array([*used.values()]).T
-                found = mean_of_repeats(values, np.full(len(used), np.nan))
-                u95 = max(found.u95, float(np.linalg.norm(own)) / len(used))  # of equal repeats
-                name = f"mean of {len(used)} repeats{end}"
-                cells = [name, error_text(found.mean, u95), "", "", "", speed]
-                rows.append(KeyRow(tuple(cells), surface, medium, load))
-    heads = ("Run", "Steady µ", "Whole-run mean", "Running-in distance", "State", "Speed")
+            repeats.setdefault((*condition, cells[-1]), {})[run["name"]] = settled
+    means = []
+    for (surface, medium, load, speed), each in repeats.items():
+        without = ", ".join(name for name in each if name in odd)
+        agreeing = [row for name, row in each.items() if name not in odd]
+        for used, ends in ((list(each.values()), ""), (agreeing, f", without {without}")):
+            found = mean_of_steady(used) if len(used) > 1 else None
+            if found is not None and (without or not ends):
+                name = f"mean of {len(used)} repeats{ends}"
+                words = name, error_text(found.mean, found.u95), "", "", "", speed
+                means.append(KeyRow(words, surface, medium, load))
+    rows = [*means, *rows]
+    heads = ("Run", "Steady µ ± U95", "Whole-run mean", "Running-in distance", "State", "Speed")
     return KeyTable(heads, tuple(rows)) if rows else None
 
 
-_MEANS = ("steady", "mean")
-
-
-def _mean(settled: Mapping[str, Any], name: str) -> str:
-    if name == "mean":  # of friction that changes it depends on the length of the run
-        row = RunningIn(**{field.name: settled[field.name] for field in fields(RunningIn)})
-        return error_text(row.mean_friction_coefficient, row.error_of_mean)
-    name = f"{name}_friction_coefficient"
-    return error_text(settled[name], settled[f"{name}_U95"])
+_FIELDS = fields(RunningIn)
 
 
 def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
@@ -160,14 +153,14 @@ def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
                 *(_micrometres(row, name) for name in ("Ra", "Rq", "Rz")),
                 error_text(row["measured_rms_slope"], None),
                 error_text(row["hurst_exponent"], _u95(row["hurst_exponent_standard_error"])),
-                f"{row['scans']:g}",
+                f"{row['scans']:g} of {len(surface['files'])}",
             )
         rows.append(KeyRow(cells, surface["name"]))
     heads = (
         "Surface",
-        "Ra (µm)",
-        "Rq (µm)",
-        "Rz (µm)",
+        "Ra ± U95 (µm)",
+        "Rq ± U95 (µm)",
+        "Rz ± U95 (µm)",
         "Measured rms slope",
         "Hurst exponent",
         "Scans",

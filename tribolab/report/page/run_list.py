@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 import statistics
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from tribolab.core.wording import MINUS
+from tribolab.core.wording import signed_percent
 from tribolab.records.judgement import check_words, is_bad, is_odd, status_word, why
 from tribolab.records.wording import UNITS, error_text
 from tribolab.report.page.sparkline import spark_path
@@ -92,7 +93,7 @@ def listed_runs(
     for place, run in enumerate(runs, start=1):
         name, unit = run["name"], UNITS.get(run["quantity"] or "", "")
         values = tuple(
-            (error_text(mu, None, unit) if mu is not None else "", _signed_percent(deviation))
+            (error_text(mu, None, unit) if mu is not None else "", signed_percent(deviation))
             for mu, deviation in zip(means[name], off[name], strict=True)
         )
         spark = spark_path(traces[name]) if name in traces else ""
@@ -103,10 +104,11 @@ def listed_runs(
 
 
 def _reason(run: Mapping[str, Any], common: Collection[str]) -> str:
-    """Return the reason for a state, in short if it is common to all runs."""
+    """Return the reason for a state, shortened if it is common to all runs."""
     reason = why(run)
-    name = reason.partition(":")[0]
-    return f"{name} (all runs)" if name in map(check_words, common) else reason
+    name, _, message = reason.partition(": ")
+    shared = name in map(check_words, common)
+    return f"all runs: {re.split('[:;.] ', message)[0]}" if shared else reason
 
 
 def _state(run: Mapping[str, Any]) -> str:
@@ -178,13 +180,3 @@ def _deviations(
                 row.append(None if mu is None or alone or not middle else mu / middle - 1)
             off[run["name"]] = row
     return off
-
-
-def _signed_percent(share: float | None) -> str:
-    """Return a deviation in percent with its sign, with one decimal below ten percent."""
-    if share is None:
-        return ""
-    if abs(share) < 0.0005:  # neither +0.0 nor -0.0
-        return "0.0 %"
-    text = f"{100 * share:+.{1 if abs(share) < 0.0995 else 0}f} %"
-    return text.replace("-", MINUS)

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import PurePath
 from typing import Any, NamedTuple
 
-_ORDER = ("error", "fail", "suspect")
+_FAILED = ("error", "fail")
+_ORDER = (*_FAILED, "suspect")
 
 
 class ListedScan(NamedTuple):
@@ -30,6 +31,9 @@ def listed_scans(document: Mapping[str, Any]) -> list[ListedScan]:
                 if row["status"] in _ORDER and PurePath(row["scan"]).name == name
             ]
             mine.sort(key=lambda row: _ORDER.index(row["status"]))
-            state, why = (mine[0]["status"], mine[0]["message"]) if mine else ("ok", "")
-            rows.append(ListedScan(name, surface["name"], state, why))
-    return sorted(rows, key=lambda row: [*_ORDER, row.state].index(row.state))
+            worst = mine[0]["status"] if mine else "ok"
+            state = "rejected" if worst in _FAILED else worst
+            rows.append(
+                ListedScan(name, surface["name"], state, mine[0]["message"] if mine else "")
+            )
+    return sorted(rows, key=lambda row: ["rejected", "suspect", "ok"].index(row.state))

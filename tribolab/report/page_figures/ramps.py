@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.core.wording import force_text, many, number
+from tribolab.core.wording import force_text, many
 from tribolab.figures.signals import LOOKED_AT, main_signal
 from tribolab.figures.spec import Axis, FigureSpec, KeyRow, KeyTable, Panel, Series
+from tribolab.friction.points.mean_of_repeats import mean_of_repeats
 from tribolab.records.parts import BAD, RunOutcome
+from tribolab.records.wording import error_text
 from tribolab.report.plain import plain_speed
 
 MAX_RUNS = 8
@@ -18,8 +21,15 @@ _SPEEDS = "sliding_velocity", "set_speed"
 _BINS_PER_DECADE = 12
 _MIN_SAMPLES = 5  # smallest number of samples of a bin
 _MIN_DECADES = 0.3
-_HEADS = "Ramp", "Mean load", "Speeds", "Highest µ", "Lowest µ"
+_HEADS = "Ramp", "Mean load", "Speeds", "Highest µ ± U95", "Lowest µ ± U95"
 _SMOOTHED = 50  # intervals in which the sign of acceleration is determined
+
+
+class _Leg(NamedTuple):
+    """Part of a ramp in which the speed rises or falls, and its mean load [N]."""
+
+    series: Series
+    load: float | None
 
 
 def has_ramps(run: RunOutcome) -> bool:
@@ -40,7 +50,7 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
     legs = [
         leg for place, run in enumerate(runs) for leg in _legs(run, place, folder / run.data_file)
     ]
-    series = [drawn for drawn, _ in legs]
+    series = [leg.series for leg in legs]
     both = any(drawn.open for drawn in series) and not all(drawn.open for drawn in series)
     if not series:
         return []
@@ -49,7 +59,7 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
             id="ramps",
             section="view-ramp",
             title="Friction vs. speed, ramps",
-            note="Means and standard deviations over small ranges of speed."
+            note="Points: means over small ranges of speed; bars: standard deviations."
             + " Filled: the speed rises; open: it falls." * both
             + " The zero of the friction force is not removed.",
             alt=f"Friction over the instantaneous speed of {many(len(runs), 'run')}.",
@@ -59,21 +69,41 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
             series=tuple(series),
             width="whole",
             height=430,
-            numbers=KeyTable(_HEADS, tuple(_extremes(*leg) for leg in legs)),
+            numbers=_numbers(legs),
         ),
     ]
 
 
-def _extremes(leg: Series, load: float | None) -> KeyRow:
-    """Return load [N] and range of speed of a ramp, its highest and its lowest friction."""
-    high, low = int(np.argmax(leg.y)), int(np.argmin(leg.y))
-    cells = [leg.label, force_text(load), f"{plain_speed(min(leg.x))} to {plain_speed(max(leg.x))}"]
-    cells += [f"{number(leg.y[place])} at {plain_speed(leg.x[place])}" for place in (high, low)]
-    return KeyRow(tuple(cells), leg.surface, leg.medium)
+def _numbers(legs: Sequence[_Leg]) -> KeyTable:
+    """Return the extremes of each ramp, and first their means over repeats with U95."""
+    groups: dict[tuple[str, str, bool, float | None], list[_Leg]] = {}
+    for leg in legs:
+        drawn = leg.series
+        load = None if leg.load is None else float(f"{leg.load:.2g}")
+        groups.setdefault((drawn.surface, drawn.medium, drawn.open, load), []).append(leg)
+    means = [_row(f"mean of {len(group)} ramps", group) for group in groups.values() if group[1:]]
+    return KeyTable(_HEADS, (*means, *(_row(leg.series.label, [leg]) for leg in legs)))
 
 
-def _legs(run: RunOutcome, place: int, file: Path) -> list[tuple[Series, float | None]]:
-    """Return the rising and the falling part of a run, each with its mean load [N]."""
+def _row(name: str, legs: Sequence[_Leg]) -> KeyRow:
+    """Return load, range of speed, highest and lowest friction of ramps; means of several."""
+    first = legs[0].series
+    loads = [leg.load for leg in legs if leg.load is not None]
+    speeds = [x for leg in legs for x in leg.series.x]
+    cells = [name, force_text(float(np.mean(loads)) if loads else None)]
+    cells.append(f"{plain_speed(min(speeds))} to {plain_speed(max(speeds))}")
+    for extreme in (np.argmax, np.argmin):
+        places = [int(extreme(leg.series.y)) for leg in legs]
+        mu = np.array([leg.series.y[k] for leg, k in zip(legs, places, strict=True)])
+        at = np.array([leg.series.x[k] for leg, k in zip(legs, places, strict=True)])
+        several = mean_of_repeats(mu, np.full(mu.size, np.nan)) if mu.size > 1 else None
+        text = error_text(float(mu.mean()), several.u95 if several else None)
+        cells.append(f"{text} at {plain_speed(float(np.exp(np.log(at).mean())))}")
+    return KeyRow(tuple(cells), first.surface, first.medium)
+
+
+def _legs(run: RunOutcome, place: int, file: Path) -> list[_Leg]:
+    """Return the rising and the falling part of a run."""
     # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
 
@@ -115,7 +145,7 @@ def _legs(run: RunOutcome, place: int, file: Path) -> list[tuple[Series, float |
                 open=words == "falling",
                 joined=True,
             )
-            drawn.append((series, force if np.isfinite(force) else None))
+            drawn.append(_Leg(series, force if np.isfinite(force) else None))
     return drawn
 
 

@@ -19,7 +19,15 @@ from tribolab.records.wording import error_text
 from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import plain_speed
 
-_HEADS = "Condition", "Load", "Hold time (s)", "Static µ", "Kinetic µ", "Speed", "Starts"
+_HEADS = (
+    "Condition",
+    "Load",
+    "Hold time (s)",
+    "Static µ ± U95",
+    "Kinetic µ ± U95",
+    "Speed",
+    "Starts",
+)
 _SAME_REST = 1.05  # largest ratio of rest times that count as equal
 
 
@@ -65,7 +73,8 @@ def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
             id="static-kinetic",
             section="view-static",
             title="Static and kinetic friction vs. hold time",
-            note="Filled: static friction at each restart ± U95; open: kinetic friction after it.",
+            note="Filled: static friction at each restart ± U95 (of a pointed peak it includes "
+            "half a step between readings); open: kinetic friction after it.",
             alt=f"Static and kinetic friction coefficients of {many(len(chosen), 'run')} over the "
             "hold time.",
             panels=(Panel(Axis("hold time", "s", log=True), Axis("friction coefficient µ")),),

@@ -208,7 +208,7 @@ def find_layout(file: File) -> Layout:
         raise NoNumbersError(
             "the file contains no table of numbers",
             where=file.path,
-            cure="leave it out if it is no measurement; else a Python reader can read it "
+            cure="exclude it if it is not a measurement; otherwise write a Python reader "
             "(raw_data_schema/README.md)",
         )
     blocks = find_blocks(lines, grammar)
