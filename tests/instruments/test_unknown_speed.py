@@ -174,7 +174,7 @@ def test_friction_is_printed_where_the_speed_is_unknown(together):
     load, friction = "1.961 N", "0.768 to 0.785"
     assert heading[-1] == "± U95"
     own = [v for run in together.runs for v in errors_of(together, run)]
-    error = f"at most {max(own):.2g} within the run"
+    error = f"at most {max(own):.2g} (within the run)"
     assert row == ["HEA", "–", load, "3", "6", "speed unknown", friction, error]
 
 

@@ -75,7 +75,7 @@ def test_runs_scans_and_rubbish_can_be_given_together(scans, shared_data, tmp_pa
     found = told(scans / "sb-r_1.csv", rubbish, rock)
     assert [one["kind"] for one in found["runs"]] == ["scan", "file", "run"]
     assert found["runs"][1]["status"] == "unreadable" and found["exit_code"] == 3
-    assert "odd.csv: the file contains no table of numbers" in found["runs"][1]["error"]
+    assert "odd.csv: no table of numbers was found in the file" in found["runs"][1]["error"]
 
 
 def test_err110_of_the_roughness_tester_is_found(shared_data):

@@ -126,9 +126,9 @@ def test_files_say_what_the_logs_say(tmp_path):
         np.testing.assert_allclose(motion[column] * 1e-3, run.motion_log[name], atol=1e-13)
 
 
-def test_the_campaign_says_that_it_is_simulated_with_stand_in_spectra(campaign):
+def test_the_campaign_says_that_it_is_simulated_and_whose_roughness_it_has(campaign):
     note = load_campaign(campaign).campaign.note
-    assert "virtual rig" in note and "stand-in spectra" in note
+    assert "virtual rig" in note and "spectra are not published" in note
 
 
 def test_truth_reads_back(campaign):

@@ -52,16 +52,16 @@ def read_run(
 
     Parameters
     ----------
-    path, instrument, **said
+    path, instrument, **options
         As for `tribolab.reading.runs.read_run.read_run`.
 
     Returns
     -------
     xarray.Dataset
-        As from `tribolab.read`. Of what was drafted, ``instrument`` says so, ``to_keep_it``
-        how to write it down, ``without_unit`` what could not be used for want of a unit,
-        ``left_out`` columns that are doubtful and not needed, and
-        ``drafted_layout`` is one checksum for files of one layout.
+        As from `tribolab.read`. Attributes of a drafted description: ``instrument`` states that
+        it is drafted, ``to_keep_it`` how to store it, ``without_unit`` what lacks a unit and is
+        not used, ``left_out`` doubtful columns that are not needed, and ``drafted_layout`` a
+        checksum that files of one layout share.
 
     Raises
     ------

@@ -54,10 +54,10 @@ def velocity_source(run: xr.Dataset) -> str:
         return "set speed"
     if "rotation_speed" in run:
         raise AnalysisError(
-            f"{name_of(run)}: the radius of the track is missing: how fast it turns is recorded, "
-            'and no sliding speed; say radius = "(a length)" under [speed] of a description, for '
-            "which 'tribolab info FILE --write my.toml' asks in a terminal; if a crank drives "
-            "strokes, say stroke and frequency there, with source = 'stroke'"
+            f"{name_of(run)}: the rotation is recorded, but the sliding speed needs the radius of "
+            'the track: state --radius 15mm, or radius = "15 mm" under [speed] of the '
+            "instrument's file; if a crank drives strokes, state stroke, frequency and "
+            "source = 'stroke' there"
         )
     if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.data_vars):
         found = ", ".join(map(str, run.data_vars)) or "nothing"

@@ -126,7 +126,7 @@ def take_inertia(run: xr.Dataset, mass: float, where: str, **stated: str | float
         Between contact and sensor [kg].
     where
         The run, for messages.
-    **said
+    **stated
         Attributes on the source of the mass.
 
     Returns

@@ -206,7 +206,7 @@ def find_layout(file: File) -> Layout:
     grammar = find_grammar(lines)
     if grammar is None:
         raise NoNumbersError(
-            "the file contains no table of numbers",
+            "no table of numbers was found in the file",
             where=file.path,
             cure="exclude it if it is not a measurement; otherwise write a Python reader "
             "(raw_data_schema/README.md)",
