@@ -67,8 +67,8 @@ def measures_something(text: str) -> bool:
     return not letter and any(converts(text, dimension) for dimension in _FURTHER)
 
 
-# counted things, and a length used only by printers
-_COUNTED = frozenset({"point", "points", "pixel", "pixels", "dot", "dots", "line", "lines"})
+# counted things, a length used only by printers, and a word that pint reads as milliarcseconds
+_COUNTED = frozenset({"point", "points", "pixel", "pixels", "dot", "dots", "line", "lines", "mass"})
 
 
 @functools.lru_cache(maxsize=4096)  # failed conversions are not cached elsewhere

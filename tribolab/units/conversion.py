@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import functools
+import importlib.util
 import math
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.core.errors import AnalysisError, UnitError, shown
@@ -81,6 +83,14 @@ _USUAL = {
     ("°C", "K"): (1.0, 273.15),
     ("degC", "K"): (1.0, 273.15),
     ("deg", "rad"): (math.pi / 180, 0.0),
+    ("turn", "rad"): (6.28318530717959, 0.0),
+    ("g", "kg"): (1e-3, 0.0),
+    ("kgf", "N"): (9.80665, 0.0),
+    ("h", "s"): (3600.0, 0.0),
+    ("N mm", "N m"): (1e-3, 0.0),
+    ("Nmm", "N m"): (1e-3, 0.0),
+    ("Nm", "N m"): (1.0, 0.0),
+    ("mNm", "N m"): (1e-3, 0.0),
 }
 
 
@@ -91,6 +101,34 @@ def registry() -> pint.UnitRegistry[float]:
     import pint
 
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+
+
+@functools.lru_cache(maxsize=1)
+def _words_of_pint() -> tuple[frozenset[str], tuple[str, ...]]:
+    """Return all words in pint's definitions of units, and its prefixes, without loading pint."""
+    spec = importlib.util.find_spec("pint")
+    folder = Path(spec.origin).parent if spec and spec.origin else Path()
+    text = "\n".join(file.read_text("utf-8") for file in sorted(folder.glob("*_en.txt")))
+    text = re.sub(r"(?m)#.*$|^@(?!alias).*$|\[\w*\]", "", text)
+    return frozenset(re.findall(r"[^\s=;,:()*/^+-]+", text)), (
+        *re.findall(r"(\S+)-(?=\s)", text),
+        "",
+    )
+
+
+@functools.lru_cache(maxsize=4096)
+def _may_be_unit(name: str) -> bool:
+    """Whether pint may know a unit; if not, its slow registry is not asked.
+
+    Examples
+    --------
+    >>> [_may_be_unit(name) for name in ("microseconds", "kip", "delta_degC", "velocity")]
+    [True, True, True, False]
+    """
+    words, prefixes = _words_of_pint()
+    bare = {name, name.removesuffix("s")}
+    found = any(b.removeprefix(p) in words for b in bare for p in prefixes if b.startswith(p))
+    return found or not words or name.startswith(("delta_", "\u0394"))
 
 
 # typeset exponents and signs
@@ -148,8 +186,27 @@ _ASKED = frozenset(
 )
 
 
+# further common units, each with the SI units that it may be converted to
+_COMMON = {
+    **dict.fromkeys(("g", "gram", "kg", "mg", "t"), ("kg",)),
+    **dict.fromkeys(("gf", "kgf", "lbf"), ("N",)),
+    **dict.fromkeys(("min", "h", "ms"), ("s",)),
+    **dict.fromkeys(("K", "degC", "\u00b0C", "C", "degF"), ("K", "A s")),
+    **dict.fromkeys(("mbar", "bar", "psi"), ("Pa",)),
+    **dict.fromkeys(("in", "inch"), ("m",)),
+    **dict.fromkeys(("mm/min", "m/min", "km/h", "in/s"), ("m/s",)),
+    **dict.fromkeys(("turn", "turns", "rev", "revolutions", "rad", "deg"), ("", "1", "rad")),
+    **dict.fromkeys(("1/min", "rpm", "rev/min", "rev/s", "1/s", "rad/s", "deg/s"), (*_OF_TIME,)),
+    **dict.fromkeys(("N m", "Nm", "N*m", "N mm", "Nmm", "mNm", "N cm", "Ncm"), ("N m",)),
+    **dict.fromkeys(("Pa s", "mPa s", "Pa*s", "mPa*s"), ("Pa s",)),
+    **dict.fromkeys(("%", "percent"), ("", "1", "rad")),
+}
+
+
 def _measures_another(unit: str, si_unit: str) -> bool:
     """Return whether a common unit obviously measures another quantity, without loading pint."""
+    if unit in _COMMON and si_unit in _ASKED:
+        return si_unit not in _COMMON[unit]
     everyday = _EVERYDAY.fullmatch(unit)
     if everyday is None or si_unit not in _ASKED:
         return False
@@ -208,8 +265,10 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         scale = conversion(unit, plain, "nothing")[0]
         return scale * conversion(plain, si_unit, bare)[0], 0.0
     try:
-        # reject text that breaks the grammar of units, without loading pint
-        parse_unit(pint_spelling(unit))
+        # reject text that breaks the grammar of units, or has unknown words, without loading pint
+        _, powers = parse_unit(pint_spelling(unit))
+        if unknown := [name for name in powers if not _may_be_unit(name)]:
+            raise UnitError(f"'{shown(unknown[0])}' is no unit")
     except UnitError as error:
         text = shown(unit)
         raise UnitError(f"'{text}' is not a unit that is known; write e.g. '{si_unit}'") from error

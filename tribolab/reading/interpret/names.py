@@ -244,11 +244,16 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     >>> matches("friction_torque", None), matches("mu_s", None)[0].quantity
     ([], 'friction_coefficient')
     """
+    return list(_matches(name, unit, scan))
+
+
+@functools.lru_cache(maxsize=8192)  # each rule asks about each column
+def _matches(name: str, unit: str | None, scan: bool) -> tuple[Match, ...]:
     text = "mu" if _is_ratio(name) else normalise_label(name)
     device, of_device = device_of(name)
     own = normalise_label(of_device) if device else ""
     if not text or _NUMBERED.fullmatch(name.strip()):
-        return []
+        return ()
     options = []
     counted = unit is not None and is_count(unit)
     alone = unit is not None and not scan and not counted and _count_quantities(unit) == 1
@@ -277,7 +282,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     best: dict[str, Match] = {}
     for match in sorted(options, key=lambda match: -match.score):
         best.setdefault(match.quantity, match)
-    return list(best.values())
+    return tuple(best.values())
 
 
 def _is_ratio(name: str) -> bool:

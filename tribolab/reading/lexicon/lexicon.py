@@ -46,6 +46,7 @@ class Word(NamedTuple):
     terms: Mapping[str, tuple[str, ...]]  # by language, as they are written
 
 
+@functools.lru_cache(maxsize=8192)
 def normalise_label(name: str) -> str:
     """Return a name without blanks, signs, capitals, umlauts and accents, of its beginning.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -46,22 +46,25 @@ def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
     evidence = [one for rule in rules for one in rule(facts)]
     names = sorted({one.quantity for one in evidence if one.proposes})
     score = _scores(facts, evidence, names)
-    decided = _Assignment(facts, evidence, names, score, _assign(score))
+    by_place: dict[int, list[Evidence]] = {}
+    for one in evidence:
+        by_place.setdefault(one.place, []).append(one)
+    decided = _Assignment(facts, by_place, names, score, _assign(score))
     return [_described(decided, place) for place in range(len(facts.columns))]
 
 
 class _Assignment(NamedTuple):
-    """Quantity of each column, by its position in `names`, with the evidence."""
+    """Quantity of each column, by its position in `names`; evidence by column."""
 
     facts: Facts
-    evidence: Sequence[Evidence]
+    by_place: Mapping[int, Sequence[Evidence]]
     names: Sequence[str]
     score: np.ndarray
     chosen: Sequence[int | None]
 
-    def about(self, place: int) -> list[Evidence]:
+    def about(self, place: int) -> Sequence[Evidence]:
         """Return the evidence on one column."""
-        return [one for one in self.evidence if one.place == place]
+        return self.by_place.get(place, ())
 
     def option(self, place: int, name: str) -> Match:
         """Return how well a column's name suits a quantity, and the unit it is read in."""
