@@ -181,3 +181,14 @@ def test_a_negative_force_next_to_its_own_positive_coefficient_is_turned(ratio, 
     run = draft_dialect(write(tmp_path / "LOG.csv", head, columns))
     (force,) = (c for c in run.understood.columns if c.quantity == "friction_force")
     assert force.sign == (-1 if ratio == 1 else 1)
+
+
+def test_a_nameless_column_that_rises_by_factors_is_no_clock(tmp_path):
+    """RHEOS, data_freq.csv: frequency, storage and loss modulus without names."""
+    frequency = np.geomspace(0.09, 1000, 9)
+    file = write(tmp_path / "f.csv", "", [frequency, frequency**0.2, 0.2 * frequency**0.3], ",")
+    with pytest.raises(ReadError, match=r"column 1 rises by factors.*is no time.*write names"):
+        tl.read(file)
+    steps = np.arange(1, 40.0)
+    draft = draft_dialect(write(tmp_path / "t.csv", "", [steps, level(2, rows=39), steps**2], ","))
+    assert draft.understood.columns[0].quantity == "time"

@@ -158,6 +158,10 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         more = f" and {len(draft.labels) - _LISTED} more" if len(draft.labels) > _LISTED else ""
         what = f"{error.what}; of its columns {named}{more} none is known as time, place or height"
         raise UnknownFileError(what, where=path, cure=error.cure) from error
+    if draft.kind == "table" and draft.guesses:
+        what = f"none of its columns has a name; {draft.guesses[0]}"
+        cure = "write names and units above the numbers, e.g. f [Hz], G' [Pa], G'' [Pa]"
+        raise ReadError(what, where=path, cure=cure) from error
     if draft.kind == "table" or (draft.kind == "scan" and peek(path).format != "text"):
         raise error
     if draft.kind == "scan":

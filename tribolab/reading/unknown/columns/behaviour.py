@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _ROWS = 20_000  # rows looked at
 _MIN_CORRELATION = 0.9999  # correlation of one signal in two units
 _COMPARED = 1000  # columns that are compared: the number of pairs is quadratic
+_MIN_FACTORS, _MIN_STRAIGHT = 5, 0.98  # rows, correlation of their logarithms with their number
 _EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
 _SMOOTH = 1.12
 _MAX_SCAN = 200.0  # mm, the largest traverse of a profilometer
@@ -41,6 +42,9 @@ def by_behaviour(
         rising = [i for i in range(width) if _is_clock(part[:, i])]
     if not rising:
         return "table", columns, []
+    if _rises_by_factors(part[:, rising[0]]):
+        words = f"column {rising[0] + 1} rises by factors, as a frequency does, and is no time"
+        return "table", columns, [words]
     return "run", *_run(columns, part, rising[0])
 
 
@@ -49,6 +53,16 @@ def _is_grid(part: np.ndarray) -> bool:
     pairs = len(np.unique(part[:, :2], axis=0))
     n = len(part)
     return min(levels) > 1 and pairs == n and n <= levels[0] * levels[1] < n + max(levels)
+
+
+def _rises_by_factors(x: np.ndarray) -> bool:
+    """Whether numbers rise by similar factors over more than a decade, unlike a clock.
+
+    File: frequency, storage and loss modulus without names (RHEOS data_freq.csv).
+    """
+    if len(x) < _MIN_FACTORS or x[0] <= 0 or x[-1] < 10 * x[0]:
+        return False
+    return bool(np.corrcoef(np.arange(len(x)), np.log(x))[0, 1] > _MIN_STRAIGHT)
 
 
 def _is_even(x: np.ndarray) -> bool:
