@@ -195,8 +195,8 @@ def test_every_text_file_of_the_collection_is_accounted_for(shared_data):
         except ReadError as error:
             assert "no table of numbers" in str(error) and "icen" in path.name.lower()
             seen["prose"] += 1
-    # beside those with a reference above: three runs on a disc, three frequency sweeps, two maps
-    assert seen == {"run": len(RUNS) + 6, "scan": len(SCANS) + 2, "table": 8, "prose": 6}
+    # beside those with a reference above: three runs on a disc, two frequency sweeps, two maps
+    assert seen == {"run": len(RUNS) + 5, "scan": len(SCANS) + 2, "table": 8, "prose": 6}
 
 
 def test_what_was_guessed_is_marked_and_what_the_file_says_is_not(shared_data):
