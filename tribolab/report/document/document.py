@@ -18,7 +18,7 @@ from tribolab.core.untyped import Json
 from tribolab.core.wording import load_label, many, span
 from tribolab.friction.running_in.kinds import NONE
 from tribolab.records.judgement import THRESHOLDS, is_bad, is_odd, status_word
-from tribolab.records.parts import Row
+from tribolab.records.parts import Row, number_of
 from tribolab.records.verdict import is_ramp, uncertain_mean
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
 from tribolab.report.document.schema import (
@@ -94,7 +94,18 @@ def report_head(
     return ReportHead(
         made_at=dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         campaign=_campaign(outcome.campaign),
-        verdict=verdict(runs, rejected, len(outcome.lost_decisions), uncertain)
+        verdict=verdict(
+            runs,
+            rejected,
+            len(outcome.lost_decisions),
+            uncertain,
+            [
+                mu
+                for curve in curves
+                for row in curve.points
+                if (mu := number_of(row, "friction_coefficient")) is not None
+            ],
+        )
         if outcome.campaign.run
         else _scan_verdict(outcome.surfaces, rejected),
         thresholds=THRESHOLDS,
@@ -125,7 +136,7 @@ def _scan_verdict(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -
     if rejected:
         text += f"; scans of {', '.join(rejected)} rejected"
     elif failed:
-        text += f"; a scan of {', '.join(failed)} failed"
+        text += f"; a scan of {', '.join(failed)} rejected"
     sound = done == len(scanned) and not rejected and not failed
     status = "complete" if sound else "incomplete"
     status = status if done else "nothing"
@@ -137,6 +148,7 @@ def verdict(
     rejected_scans: Sequence[str] = (),
     lost_decisions: int = 0,
     uncertain: int = 0,
+    means: Sequence[float] = (),
 ) -> CampaignVerdict:
     """Return the result of the campaign in one sentence, with its numbers.
 
@@ -150,6 +162,8 @@ def verdict(
         Number of decisions on runs that do not exist.
     uncertain
         Number of conditions whose repeats leave their mean uncertain.
+    means
+        Friction coefficients of the measured curves: means of repeats.
     """
     done = [run for run in runs if run["status"] == "done"]
     failed = len(runs) - len(done)
@@ -198,6 +212,8 @@ def verdict(
             ranges[name] = Extent(min(known), max(known))
             steady = _steady(mine) if name == "friction_coefficient" else []
             text = span(steady, "") if steady else _ranges(mine, UNITS[name])
+            if means and not steady and " (" not in text and name == "friction_coefficient":
+                text = span(means, "")
             of = f"steady {SYMBOLS[name]}" if steady else SYMBOLS[name]
             parts.append(f"{of} {'from ' if ' to ' in text else ''}{text}")
     return CampaignVerdict(
