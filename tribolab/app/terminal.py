@@ -15,6 +15,7 @@ from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.core.provenance import as_text
 from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
+from tribolab.records.judgement import is_odd
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
@@ -56,8 +57,14 @@ def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
             name = ", ".join(filter(None, (curve.surface, curve.medium, load)))
             levels = dict(zip(curve.run_names, entry.record.levels, strict=False))
             levels |= steady_levels(_running_in(curve, outcome))
-            found.append((share, name + furthest_repeat(levels)))
+            odd = {run for run in curve.run_names if _is_odd(run, outcome)}
+            found.append((share, name + furthest_repeat(levels, odd)))
     return found
+
+
+def _is_odd(name: str, outcome: Outcome) -> bool:
+    entry = outcome.store.get("run", name, RunRecord)
+    return entry is not None and is_odd({"checks": list(map(asdict, entry.record.facts.checks))})
 
 
 def outcome_table(outcome: Outcome) -> Table:

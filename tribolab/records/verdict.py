@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribolab.core.wording import many, percent, signed_percent
@@ -74,20 +74,23 @@ def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
     return usual if usual > _UNCERTAIN else None
 
 
-def furthest_repeat(levels: Mapping[str, float | None]) -> str:
-    """Return which of several repeats differs most from the median of all; "" for two.
+def furthest_repeat(levels: Mapping[str, float | None], odd: Collection[str] = ()) -> str:
+    """Return which of several repeats differs most from their median; "" for two or an odd one.
 
     Examples
     --------
     >>> furthest_repeat({"a": 0.31, "b": 0.33, "c": 0.42})
-    ' (c differs most: +27 % from the median)'
+    ' (c differs most, by +27 %; the others differ too much to call it odd)'
     """
     known = {name: level for name, level in levels.items() if level}
     if len(known) < 3:
         return ""
     middle = statistics.median(known.values())
     name = max(known, key=lambda name: abs(known[name] / middle - 1))
-    return f" ({name} differs most: {signed_percent(known[name] / middle - 1)} from the median)"
+    if name in odd:
+        return ""
+    by = signed_percent(known[name] / middle - 1)
+    return f" ({name} differs most, by {by}; the others differ too much to call it odd)"
 
 
 def uncertain_words(conditions: Sequence[tuple[float, str]]) -> str:

@@ -31,8 +31,8 @@ from tribolab.studies import xu2026
 
 Law = Callable[[np.ndarray], np.ndarray]
 _NOTE = (
-    "Simulated by a virtual rig, not measured. The surfaces have the roughness and slope of Xu et "
-    "al. (2026), whose spectra are not published."
+    "Simulated by a virtual rig, not measured. The surfaces are generated with the roughness and "
+    "slope given by Xu et al. (2026); their measured spectra are not published."
 )
 _SMALL_SPEEDS = (4.64e-6, 1e-4, 2.15e-3)
 

@@ -21,9 +21,9 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
     rows = compared.surfaces
     lines = [
         "",
-        f"compared with the true values: {c.found} of {c.true} segments found, {c.missed} missed, "
-        f"{c.extra} extra; the true friction coefficient is within 1 standard error in "
-        f"{100 * c.within_1:.0f} % of them, within 3 in {100 * c.within_3:.1f} %",
+        f"compared with the true values of the simulation: {c.found} of {c.true} segments found, "
+        f"{c.missed} missed, {c.extra} extra; the true friction coefficient is within 1 standard "
+        f"error in {100 * c.within_1:.0f} % of them, within 3 in {100 * c.within_3:.1f} %",
     ]
     if len(rows):
         off = rows.assign(off=100 * rows.relative_difference.abs()).groupby("quantity").off.max()

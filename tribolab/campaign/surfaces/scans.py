@@ -328,7 +328,7 @@ def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
     radius = flat.attrs["form_radius_m"]
     return (
         f"a circle of R = {number(radius)} m was removed; it may be part shape or part of the "
-        f"waviness. The unfiltered Pq is {number(1e6 * without)} µm without it, "
-        f"{number(1e6 * with_it)} µm if "
-        'only the tilt is removed (form = "tilt" in [roughness], for a flat part)'
+        f"waviness. The unfiltered Pq is {number(1e6 * without)} µm after removing the circle, "
+        f"{number(1e6 * with_it)} µm after removing only the tilt "
+        '(form = "tilt" in [roughness], for a flat part)'
     )

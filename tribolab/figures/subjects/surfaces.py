@@ -67,8 +67,9 @@ def profiles(
         )
     return FigureSpec(
         title="Profiles",
-        note="The first scan of each surface after form removal (of a map the middle row); the "
-        "profiles are shifted in height.",
+        note="The first scan of each surface (of a height map, its middle row) after form removal, "
+        "without a cut-off; Ra, Rq and Rz are those after the cut-off. Profiles are shifted in "
+        "height.",
         panels=(Panel(Axis("position", "mm"), Axis("height", "µm")),),
         series=tuple(series),
     )

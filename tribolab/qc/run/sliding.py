@@ -98,7 +98,10 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     _ = subject.required_friction_signal  # without a friction signal, the check `schema` objects
     why = subject.missing_segment_reason
     if why and subject.is_ramp:
-        text = "speed-ramp test: the curve includes the zero offset of the friction force"
+        text = (
+            "speed-ramp test: the zero offset of the friction force is not known; it shifts the "
+            "whole curve and is not included in ±"
+        )
         cure = "Record a rest without load, or ramps in both directions, for the zero."
         return [Result("suspect", "", text, cure=cure)]
     if why:

@@ -116,10 +116,10 @@ def notices_of(
     if (share := about.stroke_middle) > 0 and segments.sizes["segment"]:
         whole, used = times_of_strokes(segments)
         strokes = many(segments.sizes["segment"], "stroke")
-        text = f"everything outside the middle {percent(share)} of the length of {strokes}"
-        slow = ", as it is slow at the ends" if (whole - used) / whole > 1 - share else ""
+        text = f"the ends of {strokes}, outside the middle {percent(share)} of the length"
+        slow = ", because sliding is slow there" if (whole - used) / whole > 1 - share else ""
         time = f"{duration(whole - used)} of {duration(whole)}"
-        say("note", STROKE_ENDS, f"{text} ({time} in time{slow})")
+        say("note", STROKE_ENDS, f"{text} (they take {time}{slow})")
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
         say("note", LEFT_OUT, f"{entry.reason}: {text}")

@@ -126,7 +126,7 @@ class RunningIn:
                 f"{number(last or 0.0)}"
             )
         mean = number(self.mean_friction_coefficient or 0.0)
-        cure = 'To exclude the running-in from all means, set steady = "auto" in [segments]'
+        cure = 'To exclude the running-in from all tables, set steady = "auto" in [segments]'
         return f"{' '.join(parts)}; the mean over the whole run is {mean}. {cure}"
 
     def row(self) -> Row:

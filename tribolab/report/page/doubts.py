@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.core.wording import force_text, many
-from tribolab.records.judgement import check_words, is_bad, why
+from tribolab.records.judgement import check_words, is_bad, is_odd, why
 from tribolab.records.models.model_words import is_described
 from tribolab.records.verdict import furthest_repeat, uncertain_mean, uncertain_words
 from tribolab.report.page_figures.curves import system_name
@@ -85,18 +85,19 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
 def _uncertain_means(document: Mapping[str, Any]) -> Iterable[Doubt]:
     """Yield the conditions whose repeats scatter so much that their mean is uncertain."""
     levels = {run["name"]: _level(run) for run in document["runs"]}
+    odd = {run["name"] for run in document["runs"] if is_odd(run)}
     wide = [
         (
             share,
             f"{system_name(curve['surface'], curve['medium'], curve['runs'])}, {load}"
-            + furthest_repeat({name: levels[name] for name in curve["runs"]}),
+            + furthest_repeat({name: levels[name] for name in curve["runs"]}, odd),
         )
         for curve in document["curves"]
         if (share := uncertain_mean(curve["points"])) is not None
         and (load := force_text(curve["nominal_normal_force_N"]))
     ]
     if wide:
-        cure = "Look for a wrong run, or repeat the measurement."
+        cure = "Find the faulty run, or repeat the measurement."
         yield Doubt("suspect", "", uncertain_words(wide), cure, "#runs")
 
 

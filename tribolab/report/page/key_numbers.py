@@ -34,11 +34,8 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
         if surface["roughness"] and surface["roughness"]["Rq_m"] is not None
     }
     single = all(len(curve["points"]) < 2 for curve in document["curves"])
-    heads = [
-        "Condition",
-        "Load",
-        *(["µ ± U95"] if single else ["Highest µ ± U95", "Speed at half of highest µ", "Lowest µ"]),
-    ]
+    extremes = ["Highest µ ± U95", "Speed at half of highest µ", "Lowest µ ± U95"]
+    heads = ["Condition", "Load", *(["µ ± U95"] if single else extremes)]
     heads += ["Fitted shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
     odd = {run["name"] for run in document["runs"] if is_odd(run)}
     rows = []
@@ -115,7 +112,7 @@ def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
             steady if finished else "–",
             mean,
             f"{over} of {end}" if finished and settled.start_m else over,
-            "steady after it" if finished and settled.start_m else settled.verdict,
+            "steady" if finished and settled.start_m else settled.verdict,
             plain_speed(settled.sliding_speed_m_s),
         )
         condition = run["surface"], run["medium"], run["nominal_normal_force_N"]
@@ -133,11 +130,12 @@ def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
                 words = name, error_text(found.mean, found.u95), "", "", "", speed
                 means.append(KeyRow(words, surface, medium, load))
     rows = [*means, *rows]
-    heads = ("Run", "Steady µ ± U95", "Whole-run mean", "Running-in distance", "State", "Speed")
-    return KeyTable(heads, tuple(rows)) if rows else None
+    return KeyTable(_SETTLED_HEADS, tuple(rows)) if rows else None
 
 
 _FIELDS = fields(RunningIn)
+_MEANS = "Steady µ ± U95", "Whole-run mean"
+_SETTLED_HEADS = "Run", *_MEANS, "Running-in distance", "After running-in", "Speed"
 
 
 def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:

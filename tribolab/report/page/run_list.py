@@ -21,12 +21,12 @@ _DIGITS = 6  # digits of a deviation, so that those of two repeats are equal
 
 
 STATES = {
-    "failed": "could not be read",
-    "rejected": "failed a check; not used",
+    "failed": "not used: could not be read",
+    "rejected": "not used: a check failed",
     "rejected by hand": "not used",
     "kept": "result of an earlier analysis",
-    _ODD: "differs from its repeats; used",
-    "suspect": "a check doubts it; used",
+    _ODD: "used, but differs from its repeats",
+    "suspect": "used, but a check raised a doubt",
     "accepted": "doubted by a check, accepted by hand",
     "done": "no doubt",
 }
