@@ -189,8 +189,7 @@ def test_the_terminal_names_options_and_not_arguments_of_functions(
     squeezed.write_bytes(b"PK\x03\x04")
     done = CliRunner().invoke(cli.app, [command, str(unknown), str(squeezed)])
     assert done.exit_code == 3
-    assert f"'tribolab info {unknown} --write my.toml' drafts a description of it" in done.stderr
-    assert "name it with --instrument" in done.stderr
+    assert "; write names and units above the columns" in done.stderr
     assert all(len(line) < 300 for line in done.stderr.splitlines())
     assert not re.search(r"\w=[ ,;]|\w\(\)", done.stderr)
 
@@ -226,12 +225,11 @@ def test_run_names_the_key_of_the_campaign_file_and_no_option_that_it_lacks(tmp_
     done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml"), "-q", "-j", "1"])
     assert done.exit_code == 3
     of_run, of_surface = done.stderr.splitlines()[:2]
-    assert "'tribolab info odd.txt --write my.toml' drafts a description of it" in of_run
-    assert of_run.endswith('name it with instrument = "..." in its [[run]]')
+    assert "a table of one, two: no signals along time and no profile" in of_run
     assert 'says them with instrument = "..." in its [[surface]]' in of_surface
     page = (tmp_path / "results/report.html").read_text()
     said = (tmp_path / "results/tables/checks.csv").read_text()
-    assert "drafts a description of it" in page and "drafts a description of it" in said
+    assert "no signals along time" in page and "no signals along time" in said
     assert "instrument=" not in page + said and "read_scans" not in page + said
     assert "--instrument" not in done.stderr
 

@@ -61,7 +61,7 @@ CASES = {
     ),
     "repeated_name_evidence": ("", {"Fx [N]": TURNS, "Load [N]": 5.0, "Fx [N] ": TURNS}),
     "number_evidence": ("", {"t": BACK_AND_FORTH, "Fx [N]": TURNS}),
-    "clock_evidence": ("", {"Step time": 60.0, "Test time": T, "Fx [N]": TURNS}),
+    "advance_evidence": ("", {"Step time": 60.0, "Test time": T, "Fx [N]": TURNS}),
     "size_evidence": ("", {"Fx [N]": 0.1 * TURNS, "Ft [N]": 0.0 * T, "Fr [N]": 3 * TURNS}),
     "rectified_evidence": ("", {"Ff [N]": abs(TURNS), "Fx [N]": TURNS}),
     "direction_evidence": (

@@ -192,3 +192,43 @@ def test_a_nameless_column_that_rises_by_factors_is_no_clock(tmp_path):
     steps = np.arange(1, 40.0)
     draft = draft_dialect(write(tmp_path / "t.csv", "", [steps, level(2, rows=39), steps**2], ","))
     assert draft.understood.columns[0].quantity == "time"
+
+
+def test_of_two_discs_the_faster_one_is_driven_against_the_friction(tmp_path):
+    """A twin-disc log that starts while the discs slide: its first value is no zero."""
+    torque = 2.35 + 0.03 * np.sin(np.arange(60))
+    one, other = 400 + 0 * torque, 397.5 + 0 * torque
+    head = "Twin-disc test\nDisc diameter: 47 mm\n"
+    head += "Time [s];Speed 1 [rpm];Speed 2 [rpm];Normal force [N];Friction torque [Nm]\n"
+    columns = [0.5 * np.arange(60), one, other, 1500 + 0 * torque, torque]
+    run = tl.read(write(tmp_path / "disc.csv", head, columns, ";"))
+    assert float((run.friction_force * run.sliding_velocity).min()) > 0
+
+
+def test_a_flow_curve_with_a_normal_stress_is_no_friction(tmp_path):
+    """TRIOS writes the friction of its bearing above the table (bsaintmichel/read-rheol)."""
+    file = tmp_path / "flow.csv"
+    head = "Friction correction enabled,yes\nStress,Shear rate,Viscosity,Step time,Normal stress\n"
+    rows = "".join(f"{0.2 * r},{r},0.2,{r},{2 + r % 3}\n" for r in range(1, 20))
+    file.write_text(head + "Pa,1/s,Pa.s,s,Pa\n" + rows)
+    with pytest.raises(ReadError, match="holds a flow curve"):
+        tl.read(file)
+
+
+def test_what_counts_the_points_of_a_profile_is_no_length(tmp_path):
+    """A shaft's profile by number (wszczawinski/BearingMeasurementAnalysis)."""
+    z = 5.6 + np.sin(np.arange(300) / 9)
+    file = write(tmp_path / "shaft.csv", "Count;Z measurement\n", [np.arange(1, 301), z], ";")
+    with pytest.raises(ReadError, match="counts the points, whose distance is not stated"):
+        tl.read_scans(file)
+
+
+def test_names_that_leave_out_the_quoted_number_of_a_row_begin_at_the_second_column(tmp_path):
+    """R's write.table names no column for the numbers of the rows."""
+    names = ["Time [s]", "Friction force [N]", "Normal force [N]", "Speed [mm/s]"]
+    rows = [f'"{i + 1}",{0.02 * i:.2f},3.0{i % 7},10.0,5.0\n' for i in range(90)]
+    file = tmp_path / "r.csv"
+    file.write_text(",".join(f'"{name}"' for name in names) + "\n" + "".join(rows))
+    run = tl.read(file)
+    assert float(run.time[-1] - run.time[0]) == pytest.approx(1.78)
+    assert float(run.friction_force.mean()) == pytest.approx(3.03, abs=0.01)

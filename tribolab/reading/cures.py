@@ -89,6 +89,7 @@ TESTER_RESULTS = Cure(
     terminal="'tribolab check' takes them",
     campaign="'tribolab check' takes them; the scans of a [[surface]] are profiles",
 )
+NAME_COLUMNS = "write names and units above the columns: 'x [mm];z [um]' or 'time [s];force [N]'"
 MEND_UNITS = Cure(
     notebook="say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or name "
     "the dialect that says them with instrument=",

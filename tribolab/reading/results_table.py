@@ -95,8 +95,12 @@ def find_other_test(text: str) -> str:
             if any(map(PLAIN_NUMBER.fullmatch, labels)):
                 continue
             found = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
-            if found & _OF_FRICTION or _has_moduli(labels, between, lines):
+            if {"shear_rate", "viscosity"} <= found:
+                found.discard("normal_stress")  # of the liquid; file: TRIOS, read-rheol
+            if _has_moduli(labels, between, lines):
                 return ""
+            if found & _OF_FRICTION:
+                continue
             for test, needed in _TESTS.items():
                 if needed <= found:
                     return test

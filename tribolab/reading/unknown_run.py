@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from tribolab.reading.unknown.proposal.draft import Draft
 
 DRAFTED = "drafted from the file"
-_LISTED = 8  # columns of an unknown table that are named
 
 
 class _Described(Protocol):
@@ -151,13 +150,9 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise UnknownFileError(f"{error.what}: {cause}", where=path, cure=error.cure) from reason
     if (gap := left_open(draft)) is not None:
         raise gap from error
-    if draft.kind == "table" and measures_other_things(draft):
-        raise ReadError(draft.answer, where=path) from error
     if draft.kind == "table" and draft.labels:
-        named = ", ".join(f"'{shown(label, 20)}'" for label in draft.labels[:_LISTED])
-        more = f" and {len(draft.labels) - _LISTED} more" if len(draft.labels) > _LISTED else ""
-        what = f"{error.what}; of its columns {named}{more} none is known as time, place or height"
-        raise UnknownFileError(what, where=path, cure=error.cure) from error
+        error_type = ReadError if measures_other_things(draft) else UnknownFileError
+        raise error_type(draft.answer, where=path) from error
     if draft.kind == "table" and draft.guesses:
         what = f"none of its columns has a name; {draft.guesses[0]}"
         cure = "write names and units above the numbers, e.g. f [Hz], G' [Pa], G'' [Pa]"

@@ -201,10 +201,12 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
                 known_log(path) if bare and not named else read_log(path)  # raises a specific error
             except ReadError as as_run:
                 if bare:
-                    known = str(as_run.what).split("; of its columns")[0]
+                    known = "no known instrument writes such a file" if named else as_run.what
                     what = f"{known}; treated as a profile or map: {error.what}"
                     general = error.cure in ("", cures.MEND_UNITS, cures.SIZE)
-                    cure = as_run.cure if general else error.cure
+                    name, drafts = cures.NAME_COLUMNS, cures.unknown_instrument(path, "")
+                    ways = name if named else cures.either(name, drafts)  # a table has no draft
+                    cure = ways if general else error.cure
                     raise ReadError(what, where=as_run.where, cure=cure) from error
                 asks = isinstance(as_run, GuessedError)
                 if isinstance(error, MissingLibraryError) and not asks:

@@ -108,11 +108,16 @@ def parted_as_numbers(
 
 
 def counts_its_rows(rows: Sequence[str], delimiter: str) -> bool:
-    """Whether two rows parted by blanks begin with their numbers, for which no column is named.
+    """Whether two rows begin with their numbers, for which no column is named.
 
+    Between delimiters only in quotes, as R's `write.table` does it; a time may count seconds.
     File: xlook of biaxial rigs (jrleeman/LeemanNatComm2016).
     """
-    first = [row.split()[0] for row in rows if delimiter == "whitespace" and row.strip()]
+    blanks = delimiter == "whitespace"
+    first = [row.split(None if blanks else delimiter)[0] for row in rows if row.strip()]
+    if not blanks and not all(cell.startswith('"') for cell in first):
+        return False
+    first = [cell.strip('"') for cell in first]
     return len(first) == 2 and all(map(str.isdigit, first)) and int(first[1]) == int(first[0]) + 1
 
 

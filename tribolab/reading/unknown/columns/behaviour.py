@@ -104,12 +104,13 @@ def _scan(
     for column, name in zip(columns, names, strict=True):
         unit = across if name == "height" else along
         axis = column._replace(quantity=name, unit=unit, used=True)
-        if not all(stated):
+        if name == "x" and not all(stated) and (np.diff(part[:, 0]) == 1).all():
+            fill_in = 'the distance of two points, as it counts them, e.g. "0.5 um"'
+            why = "it counts the points, whose distance is not stated"
+            axis = axis._replace(used=False, unit=None, guessed=(why,), fill_in=fill_in)
+        elif not all(stated):
             others = other_units("height" if name == "height" else "m", unit)
-            why = f"it is {name} in {unit}"
-            if name == "x" and (np.diff(part[:, 0]) == 1).all():
-                why += ", and does not only count the points"
-            axis = axis._replace(guessed=(why,), options=others)
+            axis = axis._replace(guessed=(f"it is {name} in {unit}",), options=others)
         axes.append(axis)
     if all(stated):
         return axes, []

@@ -168,16 +168,16 @@ def number_evidence(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, "time", -_PREFERRED - NEAR, "it does not rise")
 
 
-def clock_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a time that never changes if another one rises in every row: a step's duration.
+def advance_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Rule out a time or way of a scan that never changes if another one rises in every row.
 
-    File: a Phoenix TE 67, "Step Time" next to "Test Time" (kyembot/pin-on-disk-data-analysis).
+    Files: a Phoenix TE 67, "Step Time" next to "Test Time" (kyembot/pin-on-disk-data-analysis); a
+    pen profilometer, two encoders (jonathan-bender/scaling-octo-telegram).
     """
-    clocks = facts.places("time")
-    steps = {place: np.diff(facts.numbers[:, place]) for place in clocks}
-    if any(moved.size and (moved > 0).all() for moved in steps.values()):
-        for place in clocks:
-            if not steps[place].any():
+    for name in ("time", "x"):
+        steps = {place: np.diff(facts.numbers[:, place]) for place in facts.places(name)}
+        if any(moved.size and (moved > 0).all() for moved in steps.values()):
+            for place in (place for place, moved in steps.items() if not moved.any()):
                 yield Evidence(place, "", RULED_OUT, "it is the same in all rows")
 
 
@@ -392,7 +392,7 @@ RULES: tuple[Rule, ...] = (
     role_evidence,
     repeated_name_evidence,
     number_evidence,
-    clock_evidence,
+    advance_evidence,
     size_evidence,
     rectified_evidence,
     direction_evidence,

@@ -26,6 +26,7 @@ from tribolab.units.spellings import plain_unit
 
 _SURFACE = "the speed of one of two surfaces"
 _SPEEDS = {"rotation_speed": "Hz", "sliding_velocity": "m/s"}
+_REST = 0.1  # of the fastest slip; slower is rest
 _NUMBERED = (re.compile("1$"), re.compile("2$"))
 
 
@@ -113,16 +114,21 @@ def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...
 def second_is_faster(
     pair: Pair, radii: Sequence[Amount], numbers: np.ndarray, friction: DraftColumn | None
 ) -> bool:
-    """Whether friction is positive where the second surface is the faster one."""
+    """Whether friction is positive where the second surface is the faster one.
+
+    The first value is the zero of the friction only if nothing slides there. File: a twin-disc
+    rig, recorded from within its test on.
+    """
     if friction is None:
         return False
     first, second = (np.abs(numbers[:, column.place - 1]) for column in pair.columns)
     sizes = [value.number * value.scale for value in radii]
     one, other = sizes if len(sizes) == 2 else (1.0, 1.0)
-    signal = numbers[:, friction.place - 1]
-    start = next(iter(signal[np.isfinite(signal)]), 0.0)
-    slip = (one * first - other * second) * (signal - start)
-    return bool(np.nansum(slip) < 0)
+    slip, signal = one * first - other * second, numbers[:, friction.place - 1]
+    known = np.isfinite(slip * signal)
+    slip, signal = slip[known], signal[known]
+    rests = slip.size and abs(slip[0]) < _REST * np.abs(slip).max()
+    return bool((slip * (signal - signal[0] if rests else signal)).sum() < 0)
 
 
 def speed_symbol(column: DraftColumn, name: str) -> tuple[DraftColumn, str]:

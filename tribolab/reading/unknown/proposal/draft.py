@@ -31,6 +31,8 @@ from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
 from tribolab.reading.unknown.proposal.questions import missing_height_unit
 from tribolab.reading.unknown.proposal.show import draft_html
 
+_LISTED = 8  # columns of a table that are named
+
 
 class Draft(Drafted):
     """What was understood of a file, see `Drafted`; a notebook shows it as a table."""
@@ -256,9 +258,11 @@ def _answer(file: File, understood: Understood) -> str:
             f"heights of a scan ({sizes} points, {scan.attrs['instrument']}); it is read without "
             "a dialect, by 'tribolab check' and under scans of a [[surface]]"
         )
+    named = ", ".join(shown(label, 20) for label in labels[:_LISTED])
+    named += f" and {len(labels) - _LISTED} more" if len(labels) > _LISTED else ""
     return (
-        f"a table of {', '.join(map(shown, labels[:8]))}: no signals along time and no profile, "
-        "so there is nothing a dialect could describe"
+        f"a table of {named}: no signals along time and no profile; if a column is a time, a "
+        "position or a height, say so in its name, e.g. 'Time [s]'"
     )
 
 
