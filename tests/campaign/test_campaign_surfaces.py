@@ -459,7 +459,7 @@ def test_a_circle_that_may_be_waviness_is_told_and_one_of_the_part_is_not(tmp_pa
     (told,) = (text for text in said(doubtful.outcome, "note") if "circle" in text)
     level = recorded(tmp_path, [flat], **settings, roughness={"form": "tilt"}).rows.roughness
     bent = doubtful.rows.roughness
-    assert f"{1e6 * level['Pq_m']:.3g} µm if only the tilt is removed" in told
+    assert f"{1e6 * level['Pq_m']:.3g} µm after removing only the tilt" in told
     assert level["Pq_m"] > bent["Pq_m"] and 'form = "tilt"' in told
     assert level["form_removed"] == "tilt" and level["form_radius_m"] is None
 
