@@ -52,12 +52,10 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
         return "scan"
     if file.format == "netcdf":
         return "run"
-    if is_results(file.head):
-        return "results"
     try:
         return "scan" if is_scan(recognise(path)) else "run"
     except ReadError:
-        return "unknown"
+        return "results" if is_results(file.head) else "unknown"
 
 
 def _is_map(path: Path) -> bool:

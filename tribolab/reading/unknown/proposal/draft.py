@@ -85,7 +85,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
 
 
 def _drafted(file: File, name: str) -> Draft:
-    if is_results(file.head):
+    if is_results(file.head) and not _known(file):
         return _results(file, name)
     layout, understood = _understood(file)
     if understood.kind == "scan" and not any(column.used for column in understood.columns):
