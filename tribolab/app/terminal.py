@@ -15,7 +15,6 @@ from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.core.provenance import as_text
 from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
-from tribolab.records.judgement import is_odd
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
@@ -64,7 +63,8 @@ def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
 
 def _is_odd(name: str, outcome: Outcome) -> bool:
     entry = outcome.store.get("run", name, RunRecord)
-    return entry is not None and is_odd({"checks": list(map(asdict, entry.record.facts.checks))})
+    checks = entry.record.facts.checks if entry is not None else ()
+    return any(row.check == "repeats" and not row.decision for row in checks)
 
 
 def outcome_table(outcome: Outcome) -> Table:
