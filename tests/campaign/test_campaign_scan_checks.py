@@ -98,7 +98,7 @@ def test_the_odd_scan_is_left_out_and_named(tmp_path, files, scans):
     written(files[1], 4 * heights[1], x)
     outcome = processed(tmp_path, planned(files))
     [failure] = said(outcome, "fail")
-    assert failure.startswith("scan sb-r_2.csv: a spectrum that differs")
+    assert failure.startswith("scan sb-r_2.csv has a spectrum that differs")
     assert "scan sb-r_2.csv is left out: its checks failed" in said(outcome, "note")
     assert (outcome.quality, outcome.objections, outcome.unreadable) == ("pass", {"fail"}, ())
     psd = read_netcdf(tmp_path / outcome.data_file, group="psd")

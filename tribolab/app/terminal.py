@@ -23,6 +23,7 @@ from tribolab.records.runs.running_in_record import RunningIn, mean_of_steady, s
 from tribolab.records.surfaces.roughness_words import FORM, roughness_in_words
 from tribolab.records.verdict import (
     SUSPECT,
+    contradicts_repeats,
     furthest_repeat,
     has_unknown_zero,
     uncertain_mean,
@@ -63,8 +64,7 @@ def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
 
 def _is_odd(name: str, outcome: Outcome) -> bool:
     entry = outcome.store.get("run", name, RunRecord)
-    checks = entry.record.facts.checks if entry is not None else ()
-    return any(row.check == "repeats" and not row.decision for row in checks)
+    return entry is not None and contradicts_repeats(map(asdict, entry.record.facts.checks))
 
 
 def outcome_table(outcome: Outcome) -> Table:

@@ -8,6 +8,7 @@ from typing import Any
 
 from tribolab.qc.run.checks import RUN_CHECKS
 from tribolab.records.parts import BAD
+from tribolab.records.verdict import contradicts_repeats
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ def is_bad(run: Mapping[str, Any]) -> bool:
 
 def is_odd(run: Mapping[str, Any]) -> bool:
     """Return whether a run contradicts its repeats, and nobody decided on it."""
-    return any(row["check"] == "repeats" and not row["decision"] for row in run["checks"])
+    return contradicts_repeats(run["checks"])
 
 
 def status_word(run: Mapping[str, Any]) -> str:

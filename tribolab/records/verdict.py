@@ -50,6 +50,11 @@ def is_ramp(run: Mapping[str, Any]) -> bool:
     return not run["segments_found"] and ramp > RAMP_SHARE.value * (run.get("duration_s") or 0.0)
 
 
+def contradicts_repeats(checks: Iterable[Mapping[str, Any]]) -> bool:
+    """Return whether a run contradicts its repeats, and nobody decided on it."""
+    return any(row["check"] == "repeats" and not row["decision"] for row in checks)
+
+
 def has_unknown_zero(checks: Iterable[Mapping[str, Any]]) -> bool:
     """Return whether the zero of the friction force is in doubt: then U95 does not include it."""
     return any(row["check"] == "zero_reference" and row["status"] == "suspect" for row in checks)
@@ -80,7 +85,7 @@ def furthest_repeat(levels: Mapping[str, float | None], odd: Collection[str] = (
     Examples
     --------
     >>> furthest_repeat({"a": 0.31, "b": 0.33, "c": 0.42})
-    ' (c differs most, by +27 %; the others differ too much to call it odd)'
+    ' (c differs most, by +27 % from the median)'
     """
     known = {name: level for name, level in levels.items() if level}
     if len(known) < 3:
@@ -90,7 +95,7 @@ def furthest_repeat(levels: Mapping[str, float | None], odd: Collection[str] = (
     if name in odd:
         return ""
     by = signed_percent(known[name] / middle - 1)
-    return f" ({name} differs most, by {by}; the others differ too much to call it odd)"
+    return f" ({name} differs most, by {by} from the median)"
 
 
 def uncertain_words(conditions: Sequence[tuple[float, str]]) -> str:

@@ -150,17 +150,18 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
     return tuple(scan.sizes.items()), extent
 
 
-def _trim(label: str, message: str) -> str:
-    """Return a message without the file name, which the label already contains."""
+def _about(label: str, message: str) -> str:
+    """Return a message about a scan that begins with its label, not also with its file name."""
     name = label.rpartition("/")[2]
-    return message.removeprefix(f"{name} has ").removeprefix(f"{name}: ")
+    end = message.removeprefix(name)
+    return f"scan {label}{end}" if end != message else f"scan {label}: {message}"
 
 
 def _objections(label: str, found: Findings) -> list[Finding]:
     return [
         Finding(
             "note" if row["status"] == "pass" else row["status"],
-            f"scan {label}: {_trim(label, row['message'])}. {row['cure']}".strip(". ") + ".",
+            f"{_about(label, row['message'])}. {row['cure']}".strip(". ") + ".",
             row["check"],
         )
         for row in found.rows

@@ -99,8 +99,8 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     why = subject.missing_segment_reason
     if why and subject.is_ramp:
         text = (
-            "speed-ramp test: the zero offset of the friction force is not known; it shifts the "
-            "whole curve and is not included in ±"
+            "speed-ramp test: the zero offset of the friction force is not subtracted; it shifts "
+            "the whole curve and is not included in ±"
         )
         cure = "Record a rest without load, or ramps in both directions, for the zero."
         return [Result("suspect", "", text, cure=cure)]

@@ -61,9 +61,11 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
     for pattern in rules.preamble:
         if not guarded(pattern).search(text[:_PREAMBLE]):
             return f"nothing in it matches '{shown(pattern)}'"
-    if "\0" not in text:  # quicker than splitting the text into cells
+    if b"\0" not in file.head:  # quicker than splitting the text into cells
         bare = {name: name.partition(" [")[0] for name in rules.header}
-        absent = {name for name, word in bare.items() if word.isascii() and word not in text}
+        absent = {
+            n for n, word in bare.items() if word.isascii() and word.encode() not in file.head
+        }
         if wanted := _names_missing(rules, set(bare) - absent):
             return wanted
     try:

@@ -188,7 +188,7 @@ report.Picture = (() => {
           title: { text: kind === "x" && !last ? "" : name(what), standoff: 8, font: { size: small ? 10 : 13 } }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
           tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
           tickfont: { size: (small ? 10 : 12) / (this.isLog(kind, row) ? 1.25 : 1) }, // the library writes powers of ten a quarter larger
-          // with a single power of ten in sight, the values beside it are labelled, too
+          // with a single power of ten in sight, its neighbours are labelled, too
           minorloglabels: ends && powers(ends) < 2 ? "complete" : "none", nticks: narrow ? 5 : 8, range: ends,
         });
         const x = side("x", panel.x, this.along), y = side("y", panel.y, this.range("y", row));

@@ -211,9 +211,11 @@ def verdict(
             known = _bounds(mine)
             ranges[name] = Extent(min(known), max(known))
             steady = _steady(mine) if name == "friction_coefficient" else []
-            text = span(steady, "") if steady else _ranges(mine, UNITS[name])
-            if means and not steady and " (" not in text and name == "friction_coefficient":
-                text = span(means, "")
+            one_rig = len({run.get("instrument") for run in mine}) == 1
+            if means and one_rig and name == "friction_coefficient":
+                text = span(steady or means, "")
+            else:
+                text = span(steady, "") if steady else _ranges(mine, UNITS[name])
             of = f"steady {SYMBOLS[name]}" if steady else SYMBOLS[name]
             parts.append(f"{of} {'from ' if ' to ' in text else ''}{text}")
     return CampaignVerdict(
