@@ -11,6 +11,7 @@ from tribolab.figures.spec import Axis, Panel, Series
 _ROOM = 0.06  # margin on either side, as share of the axis range
 _EQUAL_WITHIN = 1e-5  # relative difference, or decades, below which values are equal
 _LEAST_DECADES = 0.1  # smallest range of a logarithmic axis, in decades
+_LOW_ENDS = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)  # times a power of ten
 _LEAST_SHARE = 0.02  # smallest range of a linear axis, as share of the largest value
 _BELOW = 20  # error bars extend a logarithmic axis at most down to the value divided by this
 
@@ -69,7 +70,7 @@ def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
     ends = _ends([y for p, series in panels for y in _y_values(series, p.y, seen)], alike.y)
     if ends and alike.y.log and ends[1] < 10 * ends[0]:  # else there may be no tick below the data
         power = 10.0 ** math.floor(math.log10(ends[0]))
-        ends = max(m * power for m in (1, 1.5, 2, 3, 5) if m * power <= ends[0]), ends[1]
+        ends = max(m * power for m in _LOW_ENDS if m * power <= ends[0]), ends[1]
     return Panel(x, replace(alike.y, include=ends))
 
 

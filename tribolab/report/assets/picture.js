@@ -195,6 +195,9 @@ report.Picture = (() => {
         if (y.type === "category") Object.assign(y, { tickmode: "linear", dtick: 1, ticks: "" });
         if (y.type !== "log" || this.data.panels[row].y.unit === "") y.exponentformat = "none";
         // all nine of a decade do not fit beside each other
+        const wide = y.type === "log" && y.range ? y.range[1] - y.range[0] : 0;
+        if (wide > 0.7 && powers(y.range) < 2) Object.assign(y, { tickmode: "linear", tick0: 0, dtick: "D2" });
+        if (wide > 0.7 && powers(y.range) < 2 && y.range[0] > -3 && y.range[1] < 4) y.exponentformat = "none";
         const few = x.type === "log" && this.along && x.range[1] - x.range[0] > 0.5 ? powers(this.along) : 0;
         if (few === 1 || (few === 2 && !narrow)) Object.assign(x, { tickmode: "linear", tick0: 0, dtick: "D2", minorloglabels: "complete", tickfont: { size: small ? 10 : 12 } });
         if (few === 2 && Math.min(...this.along) > -3 && Math.max(...this.along) < 4) x.exponentformat = "none";
