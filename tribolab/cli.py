@@ -7,9 +7,10 @@ from typing import Annotated
 import typer
 
 from tribolab.app.commands.across import compare, history, plan, repeatability
-from tribolab.app.commands.campaign import demo, figures, new, reproduce, run, simulate
+from tribolab.app.commands.campaign import figures, new, run
 from tribolab.app.commands.files import check, dialect, info
 from tribolab.app.commands.packing import pack, verify
+from tribolab.app.commands.practice import demo, reproduce, simulate
 from tribolab.app.reported import renamed
 from tribolab.app.streams import prepared, say
 

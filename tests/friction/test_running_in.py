@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.signal import lfilter
 
 import tribolab as tl
-from tribolab.app.answer_tables import running_in_table
+from tribolab.app.result_tables import running_in_table
 from tribolab.campaign.runs.running_in import running_in_of
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.mean_error.level import levels_of

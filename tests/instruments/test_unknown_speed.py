@@ -11,6 +11,7 @@ from rich.console import Console
 
 from tribolab.app import terminal
 from tribolab.app.commands.campaign import show_outcome
+from tribolab.app.result_tables import outcome_table
 from tribolab.campaign import curves
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
@@ -158,7 +159,7 @@ def test_the_report_shows_no_drift_of_zero_where_it_was_not_decided(together):
 def printed(outcome):
     """Rows of the table on the command line, each split into its cells."""
     out = Console(width=160, record=True, file=io.StringIO())
-    out.print(terminal.outcome_table(outcome))
+    out.print(outcome_table(outcome))
     rows = out.export_text().splitlines()
     return [re.split(r"\s{2,}", row.strip()) for row in rows if row.strip()]
 

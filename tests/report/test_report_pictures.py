@@ -8,8 +8,9 @@ import pytest
 from report_pages import DRAW_ALL, OPEN_ALL, figures_of, live_of
 
 from tribolab.figures.axes import comparable
+from tribolab.figures.page.plain_data import plain_data
 from tribolab.figures.page.still import first_view
-from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, legend, plain_data
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, legend
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Output of results on the command line: short tables, and paths of the files."""
+"""Lines on the results of a campaign: verdict, doubts, failures, and paths of the files."""
 
 from __future__ import annotations
 
@@ -7,37 +7,31 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.table import Table
-
-from tribolab.app.ranges import range_of
+from tribolab.app.result_tables import running_in_of
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.core.provenance import as_text
-from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
+from tribolab.core.wording import Count, load_text
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
-from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
+from tribolab.records.parts import RunOutcome, SurfaceOutcome
 from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
 from tribolab.records.runs.run_record import RunRecord
-from tribolab.records.runs.running_in_record import RunningIn, mean_of_steady, steady_levels
+from tribolab.records.runs.running_in_record import steady_levels
 from tribolab.records.surfaces.roughness_words import FORM, roughness_in_words
 from tribolab.records.verdict import (
     SUSPECT,
     contradicts_repeats,
     furthest_repeat,
-    has_unknown_zero,
     uncertain_mean,
     uncertain_words,
     verdict_of,
 )
 
 if TYPE_CHECKING:
-    from tribolab.friction.points.mean_of_repeats import Mean
+    pass
 
 _SHOWN, _HANDFUL = 10, 5
-_MAX_POINTS = 16  # most rows in a terminal
-_NONE = "–"
-_COUNTS = ("load", "runs", "segments")
 
 
 def verdict_line(outcome: Outcome) -> str:
@@ -56,7 +50,7 @@ def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
             load = load_text(curve.normal_force, "")
             name = ", ".join(filter(None, (curve.surface, curve.medium, load)))
             levels = dict(zip(curve.run_names, entry.record.levels, strict=False))
-            levels |= steady_levels(_running_in(curve, outcome))
+            levels |= steady_levels(running_in_of(curve, outcome))
             odd = {run for run in curve.run_names if _is_odd(run, outcome)}
             found.append((share, name + furthest_repeat(levels, odd)))
     return found
@@ -65,130 +59,6 @@ def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
 def _is_odd(name: str, outcome: Outcome) -> bool:
     entry = outcome.store.get("run", name, RunRecord)
     return entry is not None and contradicts_repeats(map(asdict, entry.record.facts.checks))
-
-
-def outcome_table(outcome: Outcome) -> Table:
-    """Return one row per measured curve: conditions, speeds and friction."""
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    done = [curve for curve in outcome.curves if curve.done]
-    # without labels the run's name distinguishes rows
-    nameless = any(not (curve.surface or curve.medium) for curve in done)
-    for heading in (*(("run",) if nameless else ()), "surface", "medium"):
-        table.add_column(heading)
-    for heading in (*_COUNTS, "speeds", "friction coefficient", "± U95"):
-        table.add_column(heading, justify="right")
-    for curve in done:
-        load = load_text(None, curve.load_from) if curve.load_from == LOAD_VARIES else _NONE
-        if curve.normal_force is not None:
-            measured = " measured" if curve.load_from == LOAD_MEASURED else ""
-            load = f"{curve.normal_force:g} N{measured}"
-        known = (curve.surface or _NONE, curve.medium or _NONE, load)
-        run = curve.run_names[0] if len(curve.run_names) == 1 else _NONE
-        first = (run,) if nameless else ()
-        table.add_row(*first, *known, *_numbers(curve, outcome))
-    return table
-
-
-def points_table(outcome: Outcome) -> Table | None:
-    """Return friction at each speed if there is only one curve with a few points; else None."""
-    done = [curve for curve in outcome.curves if curve.done]
-    rows = _points(done[0], outcome) if len(done) == 1 else ()
-    known = [
-        (row, speed)
-        for row in rows
-        if isinstance(speed := row["sliding_speed_m_s"], float)
-        and row["friction_coefficient"] is not None
-    ]
-    if not 1 <= len(known) <= _MAX_POINTS:
-        return None
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    unit, scale = ("m/s", 1.0) if max(speed for _, speed in known) >= 1 else ("mm/s", 1e3)
-    for heading in (f"speed ({unit})", "friction coefficient", "± U95", "scatter", "segments"):
-        table.add_column(heading, justify="right")
-    for row, speed in known:
-        cells = [
-            _NONE if (value := row.get(f"friction_coefficient{end}")) is None else f"{value:{form}}"
-            for end, form in (("", ".4f"), ("_U95", ".2g"), ("_std", ".2g"))
-        ]
-        segments = str(int(row.get("segments") or 0))
-        table.add_row(f"{scale * speed:.4g}", *cells, segments)
-    return table
-
-
-def _points(curve: CurveOutcome, outcome: Outcome) -> Sequence[Row]:
-    entry = outcome.store.get("curve", curve.name, CurveRecord)
-    return [] if entry is None else entry.record.points
-
-
-def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
-    points = _points(curve, outcome)
-    speed = [row["sliding_speed_m_s"] for row in points if row["sliding_speed_m_s"] is not None]
-    mu = [v for row in points if (v := row["friction_coefficient"]) is not None]
-    if not speed or not mu:
-        return _segment_cells(curve, outcome)
-    segments = sum(int(row.get("segments") or 0) for row in points)
-    if len(points) == 1 and (steady := _steady(curve, outcome)) is not None:
-        friction = f"{steady.mean:.3f} steady"
-        points = [dict(points[0]) | {"friction_coefficient_U95": steady.u95}]
-    else:
-        friction = range_of(f"{min(mu):.3f}", f"{max(mu):.3f}")
-    return (
-        str(len(curve.run_names)),
-        str(segments) if "segments" in points[0] else "",
-        f"{range_of(f'{min(speed):.3g}', f'{max(speed):.3g}')} m/s",
-        friction,
-        _largest_error(points, with_zero=not _zero_unknown(curve, outcome)),
-    )
-
-
-def _largest_error(points: Sequence[Row], with_zero: bool = True) -> str:
-    """Return the largest U95, and whether it is within or between runs."""
-    own = [row.get("friction_coefficient_U95") for row in points]
-    known = [float(v) for v in own if v is not None]
-    if not known:
-        return _NONE
-    several = [int(row.get("runs") or 1) > 1 for row in points]
-    source = "within or between runs"
-    if all(several) or not any(several):
-        source = "between runs" if several[0] else "within the run"
-    source = source if with_zero else "zero unknown"
-    return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} ({source})"
-
-
-def _steady(curve: CurveOutcome, outcome: Outcome) -> Mean | None:
-    """Return the mean steady friction of a few repeats that run in; else None."""
-    rows = _running_in(curve, outcome)
-    settled = [row for each in rows.values() for row in each]
-    if not steady_levels(rows) or not any(row.changes for row in settled):
-        return None
-    return mean_of_steady(settled)
-
-
-def _running_in(curve: CurveOutcome, outcome: Outcome) -> dict[str, tuple[RunningIn, ...]]:
-    """Return the running-in of a few runs of a curve, by name."""
-    few = curve.run_names if len(curve.run_names) <= _SHOWN else ()
-    entries = {name: outcome.store.get("run", name, RunRecord) for name in few}
-    return {name: entry.record.facts.running_in for name, entry in entries.items() if entry}
-
-
-def _zero_unknown(curve: CurveOutcome, outcome: Outcome) -> bool:
-    """Return whether U95 of a few runs does not include their zero."""
-    few = curve.run_names if len(curve.run_names) <= _SHOWN else ()
-    entries = [outcome.store.get("run", name, RunRecord) for name in few]
-    checks = [asdict(row) for entry in entries if entry for row in entry.record.facts.checks]
-    return has_unknown_zero(checks)
-
-
-def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
-    """Return the friction of the segments; without a speed there is no curve."""
-    entries = [outcome.store.get("run", name, RunRecord) for name in curve.run_names]
-    rows = [row for entry in entries if entry for row in entry.record.facts.segments]
-    known = [v for row in rows if (v := row.get("friction_coefficient")) is not None]
-    text = range_of(f"{min(known):.3f}", f"{max(known):.3f}") if known else _NONE
-    is_known = any(row.get("sliding_speed_m_s") is not None for row in rows)
-    note = _NONE if is_known else "speed unknown"
-    runs = [run for run in outcome.runs if run.name in curve.run_names]
-    return str(len(runs)), str(sum(run.segments for run in runs)), note, text, _largest_error(rows)
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:

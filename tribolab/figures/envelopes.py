@@ -86,6 +86,19 @@ def extremes_index(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
     return np.concatenate(kept)
 
 
+def thinned(count: int, most: int = 400) -> np.ndarray:
+    """Return evenly spaced indices that thin out a long smooth curve, including both ends.
+
+    Examples
+    --------
+    >>> thinned(5).tolist(), thinned(1000, 5).tolist()
+    ([0, 1, 2, 3, 4], [0, 250, 500, 749, 999])
+    """
+    if count <= most:
+        return np.arange(count)
+    return np.round(np.linspace(0, count - 1, most)).astype(int)
+
+
 def _starts(x: np.ndarray, columns: int) -> np.ndarray:
     """Return the index of the first point in each pixel column that contains points."""
     edges = np.arange(1, columns) / columns

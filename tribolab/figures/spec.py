@@ -6,9 +6,8 @@ and notebooks, `page.still` for the page before its script runs, `assets/chart.j
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, TypedDict
 
 import numpy as np
@@ -19,10 +18,6 @@ from tribolab.units.quantities import quantity
 Style = Literal["points", "line", "dashed", "dotted", "dashdot", "longdash", "band", "bars", "heat"]
 Width = Literal["card", "half", "whole"]
 Values = Sequence[Any] | np.ndarray
-_MAX_CARD_LABELS = 8  # largest number of legend entries on a card, as in `assets/picture.js`
-_DIGITS = 6  # significant digits, more than a screen can resolve
-_NOT_ON_PAGE = frozenset({"columns", "keys", "paper", "column", "across", "name", "pale"})
-_NOT_ON_PAGE |= {"thin", "numbers"}
 
 
 @dataclass(frozen=True)
@@ -283,11 +278,6 @@ def only(names: set[str]) -> str:
     return min(names) if len(names) == 1 else ""
 
 
-def written_labels(figure: FigureSpec, labels: Collection[str]) -> int:
-    """Return the number of legend entries; 0 for a card that would have too many."""
-    return 0 if figure.width == "card" and len(labels) > _MAX_CARD_LABELS else len(labels)
-
-
 def legend(series: Iterable[Series]) -> dict[str, Series]:
     """Return the series drawn in the legend for each label; lines and points precede bands."""
     named: dict[str, Series] = {}
@@ -299,44 +289,6 @@ def legend(series: Iterable[Series]) -> dict[str, Series]:
         if known is None or ranks.get(curve.style, 1) < ranks.get(known.style, 1):
             named[curve.label] = curve
     return dict(sorted(named.items(), key=lambda item: item[1].style == "band"))
-
-
-def plain_data(value: Any) -> Any:
-    """Return a figure as plain data, without default values and with rounded numbers."""
-    if is_dataclass(value) and not isinstance(value, type):
-        values = {field.name: getattr(value, field.name) for field in fields(value)}
-        usual = {field.name: field.default for field in fields(value)}
-        return {
-            name: plain_data(item)
-            for name, item in values.items()
-            if name not in _NOT_ON_PAGE
-            and item is not usual[name]
-            and not (isinstance(item, str | tuple | list) and not item)
-        }
-    if isinstance(value, np.ndarray):
-        return plain_data(value.tolist())
-    if isinstance(value, list | tuple):
-        return [_seen(item) if type(item) is float else plain_data(item) for item in value]
-    if isinstance(value, np.generic):
-        return plain_data(value.item())
-    return _seen(value) if isinstance(value, float) else value
-
-
-def _seen(value: float) -> float | None:
-    return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
-
-
-def thinned(count: int, most: int = 400) -> np.ndarray:
-    """Return evenly spaced indices that thin out a long smooth curve, including both ends.
-
-    Examples
-    --------
-    >>> thinned(5).tolist(), thinned(1000, 5).tolist()
-    ([0, 1, 2, 3, 4], [0, 250, 500, 749, 999])
-    """
-    if count <= most:
-        return np.arange(count)
-    return np.round(np.linspace(0, count - 1, most)).astype(int)
 
 
 def places(names: Iterable[str]) -> dict[str, int]:

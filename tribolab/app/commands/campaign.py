@@ -27,66 +27,6 @@ if TYPE_CHECKING:
 _FIGURES = "'tribolab figures' draws all figures"
 
 
-def demo(
-    folder: Annotated[
-        Path, typer.Argument(help="Output folder; created if it does not exist.")
-    ] = Path("tribolab-demo"),
-    jobs: Jobs = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
-) -> None:
-    """Simulate a campaign, analyse it and compare the result with the truth.
-
-    The virtual rig measures the reference system: smooth and sandblasted PMMA cylinders on
-    PDMS rubber, dry and in glycerol, at 13 speeds in repeats. If called again, it analyses the same
-    raw files and repeats only changed parts.
-
-        tribolab demo
-
-        tribolab demo /tmp/look
-    """
-    with reported(debug):
-        # imported late for a quick start
-        from tribolab.app.demo import run_demo
-
-        with progress_bars(quiet) as progress:
-            outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
-        from tribolab.app.truth.lines import truth_lines  # after the workers have started
-
-        code = show_outcome(outcome, debug)
-        for line in truth_lines(compared, outcome):
-            say(line)
-    raise typer.Exit(code)
-
-
-def reproduce(
-    output: Annotated[
-        Path,
-        typer.Option("--output", "-o", help="Output folder; your own files in it are kept."),
-    ] = Path("tribolab-paper"),
-    jobs: Jobs = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
-) -> None:
-    """Reproduce the figures of the reference paper, and compare its numbers with computed ones.
-
-    `paper.html` shows, section by section, what was measured by the authors, computed here, or
-    simulated by the virtual rig; `paper.csv` has a row for each of the 58 published numbers, with
-    status and reason: inputs agree by construction and do not count as reproduced. It takes about a
-    minute.
-
-        tribolab reproduce --output /tmp/paper
-    """
-    with reported(debug):
-        # imported late for a quick start
-        from tribolab.app.truth.lines import paper_lines
-        from tribolab.paper.reproduce import reproduce as reproduce_paper
-
-        with progress_bars(quiet) as progress:
-            made = reproduce_paper(output, jobs=jobs, progress=progress)
-        say("\n".join(paper_lines(made.folder, made.table)))
-
-
 def run(
     campaign: Annotated[
         list[Path] | None,
@@ -263,64 +203,18 @@ def figures(
         say(f"figures: {outcome.folder / 'figures'}")
 
 
-def simulate(
-    folder: Annotated[Path, typer.Argument(help="Output folder; must be new or empty.")],
-    seed: Annotated[
-        int, typer.Option(min=0, help="Seed of the random numbers; equal seeds give equal files.")
-    ] = 0,
-    repeats: Annotated[int, typer.Option(min=1, help="Runs per surface, medium and load.")] = 2,
-    small: Annotated[
-        bool, typer.Option("--small", help="Two surfaces, one load, three speeds.")
-    ] = False,
-    fault: Annotated[
-        list[str] | None,
-        leaving("--fault", "simulate faults in a notebook"),
-    ] = None,
-    jobs: Jobs = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
-) -> None:
-    """Write a simulated campaign of raw files from the virtual rig, with the truth.
-
-    For learning, teaching, and testing an analysis on data with a known result.
-
-        tribolab simulate practice --small
-
-        tribolab run practice/campaign.toml
-    """
-    with reported(debug):
-        # imported late for a quick start
-        from tribolab.app.needed import SIMULATION
-        from tribolab.campaign.engine.executor import workers
-        from tribolab.rig import simulate_campaign
-
-        pool_of = workers(jobs, modules=SIMULATION)
-        with progress_bars(quiet) as progress, pool_of as pool:
-            campaign = simulate_campaign(
-                folder,
-                seed,
-                small=small,
-                n_repeats=repeats,
-                faults=fault or (),
-                executor=pool,
-                progress=progress,
-            )
-        say(f"{campaign} was written; analyse it with\n  tribolab run {campaign}")
-
-
 def show_outcome(outcome: Outcome, debug: bool) -> int:
     """Print the outcome of a campaign, with tracebacks of crashes if `debug`; return exit code."""
     # imported late for a quick start
-    from tribolab.app import terminal
-    from tribolab.app.answer_tables import answer_table
+    from tribolab.app import result_tables, terminal
     from tribolab.app.console import console
     from tribolab.qc.findings import exit_code
 
     say(terminal.verdict_line(outcome))
-    table = terminal.outcome_table(outcome)
+    table = result_tables.outcome_table(outcome)
     if table.row_count:
         console().print(table)
-    more = answer_table(outcome) or terminal.points_table(outcome)
+    more = result_tables.answer_table(outcome) or result_tables.points_table(outcome)
     if more is not None:
         console().print()
         console().print(more)

@@ -16,8 +16,10 @@ from markupsafe import escape
 
 from tribolab.core.wording import MINUS, number
 from tribolab.figures.axes import Scale, bar_lengths, scales, ticks
+from tribolab.figures.envelopes import thinned
 from tribolab.figures.page import marks
 from tribolab.figures.page.marks import PlacedPoint, coordinate
+from tribolab.figures.page.plain_data import plain_data, written_labels
 from tribolab.figures.spec import (
     Axis,
     FigureSpec,
@@ -26,9 +28,6 @@ from tribolab.figures.spec import (
     Style,
     Width,
     legend,
-    plain_data,
-    thinned,
-    written_labels,
 )
 
 _WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], similar to paper

@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 import xarray as xr
 
 from tribolab.figures.colours import medium_styles, surface_colours
+from tribolab.figures.envelopes import thinned
 from tribolab.figures.labelled import SurfaceOrSeveral, by_surface
 from tribolab.figures.plotted import plotted
-from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series, Style, axis_of, thinned
+from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series, Style, axis_of
 from tribolab.figures.subjects.contact import AREA_AXIS, PRESSURE_AXIS, area_series, hertz_marks
 
 _MEDIA = "Full: in a liquid; dashed: dry."

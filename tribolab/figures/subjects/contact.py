@@ -10,6 +10,7 @@ import xarray as xr
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import number
 from tribolab.figures.colours import BLACK, surface_colours
+from tribolab.figures.envelopes import thinned
 from tribolab.figures.labelled import SurfaceOrSeveral, by_load, by_surface
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import (
@@ -20,7 +21,6 @@ from tribolab.figures.spec import (
     Series,
     Style,
     axis_of,
-    thinned,
 )
 from tribolab.figures.subjects.surfaces import shaded_loads
 

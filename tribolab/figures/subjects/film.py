@@ -9,8 +9,9 @@ import xarray as xr
 
 from tribolab.core.wording import speed_text
 from tribolab.figures.colours import surface_colours
+from tribolab.figures.envelopes import thinned
 from tribolab.figures.plotted import plotted
-from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style, thinned
+from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style
 
 _PANELS = (
     ("separation", 1e6, Axis("separation", "µm", log=True, paper=r"mean separation $\bar u$")),

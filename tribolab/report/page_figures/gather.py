@@ -22,8 +22,9 @@ from tribolab.report.page_figures.models import bands_of_models, model_specs
 from tribolab.report.page_figures.ramps import MAX_RUNS, has_ramps, ramp_specs
 from tribolab.report.page_figures.record import Band, PageFigures, PageRecord, page_task
 from tribolab.report.page_figures.shown import shown_figures
-from tribolab.report.page_figures.sliding import Judged, sliding_specs
+from tribolab.report.page_figures.sliding import sliding_specs
 from tribolab.report.page_figures.surfaces import surface_specs
+from tribolab.report.page_figures.waveforms import Judged
 from tribolab.report.slowest import slow_segments
 
 if TYPE_CHECKING:

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tribolab.core.wording import force_text
+from tribolab.figures.page.plain_data import plain_data, written_labels
 from tribolab.figures.page.still import first_series, still
-from tribolab.figures.spec import FigureSpec, KeyTable, legend, plain_data, written_labels
+from tribolab.figures.spec import FigureSpec, KeyTable, legend
 from tribolab.records.packed import deflated
 from tribolab.records.runs.traces import script_json
 

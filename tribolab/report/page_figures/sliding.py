@@ -1,16 +1,15 @@
-"""Sliding of the contacts: waveforms over speed, frequencies, slow traces, spectra, events."""
+"""Figures on stick-slip: waveforms, frequencies, and traces at the slowest speeds."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from tribolab.core.wording import force_text, is_dry, number
+from tribolab.core.wording import is_dry
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.envelopes import envelope_index
 from tribolab.figures.signals import LOOKED_AT, main_signal
@@ -25,28 +24,23 @@ from tribolab.figures.spec import (
     places,
 )
 from tribolab.figures.subjects.curves import SPEED_AXIS
-from tribolab.figures.subjects.slip import cumulative, waveform_map
+from tribolab.figures.subjects.slip import cumulative
 from tribolab.figures.subjects.slip_spectrum import power_levels
-from tribolab.records.models.mode_record import ModeRecord
-from tribolab.records.parts import CurveOutcome
-from tribolab.report.page_figures.curves import distinguish_media, labels_of, system_name
+from tribolab.report.page_figures.curves import distinguish_media, labels_of
+from tribolab.report.page_figures.waveforms import (
+    Judged,
+    condition_of,
+    frequency_spec,
+    system_of,
+    waveform_spec,
+)
 from tribolab.report.plain import plain_speed
-from tribolab.report.slowest import Slow, lowest_loads
+from tribolab.report.slowest import lowest_loads
 
-_UNDECIDED = "not decided"
-_STEADY = frozenset({"smooth sliding", _UNDECIDED})
 _APART = 1.2  # largest ratio of speeds that count as one
 _EXCERPT = 800  # points of a slow trace
 # line styles of the main and the secondary quantity: in a liquid, and dry, in the same colour
 _STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
-
-
-class Judged(NamedTuple):
-    """Measured curve, its sliding mode, and its slowest segments; None without any."""
-
-    curve: CurveOutcome
-    mode: ModeRecord
-    slow: Slow | None
 
 
 def sliding_specs(
@@ -70,8 +64,8 @@ def sliding_specs(
     lowest = [by_name[curve.name] for curve in lowest_loads(contact.curve for contact in judged)]
     opened = [_opened(contact, colours, folder) for contact in lowest if contact.slow is not None]
     return [
-        _waveforms(judged),
-        _frequencies(judged, colours),
+        waveform_spec(judged),
+        frequency_spec(judged, colours),
         _traces(opened),
         _spectra(opened),
         _events(opened),
@@ -83,107 +77,12 @@ def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int
     """Return the colour of each curve: that of its surface, or its own if that is ambiguous."""
     curves = [contact.curve for contact in judged]
     # only one load per surface is shown; dry and wet differ in line style
-    drawn = {(curve.surface, is_dry(curve.medium), _system(curve)) for curve in curves}
+    drawn = {(curve.surface, is_dry(curve.medium), system_of(curve)) for curve in curves}
     if len({key[:2] for key in drawn}) == len(drawn):
         of_surface = surface_colours([*surfaces, *(curve.surface for curve in curves)])
         return {curve.name: of_surface[curve.surface] for curve in curves}
-    own = places(_system(curve) for curve in curves)
-    return {curve.name: own[_system(curve)] for curve in curves}
-
-
-def _system(curve: CurveOutcome) -> str:
-    return system_name(curve.surface, curve.medium, curve.run_names)
-
-
-def _name(curve: CurveOutcome) -> str:
-    name = _system(curve)
-    return name if curve.normal_force is None else f"{name}, {force_text(curve.normal_force)}"
-
-
-def _waveforms(judged: Sequence[Judged]) -> FigureSpec:
-    """Return the waveform of each curve at every speed."""
-    if not judged:
-        return FigureSpec()
-    curves = {_name(contact.curve): _waveform_curve(contact) for contact in judged}
-    spec = waveform_map.spec(curves)
-    waveforms = {str(row["waveform"]) for contact in judged for row in contact.mode.speeds}
-    return replace(
-        spec,
-        id="sliding-waveforms",
-        section="sliding",
-        note=_waveform_note(waveforms),
-        alt="Class of waveform of each condition at each sliding speed.",
-        height=140 + 26 * len(judged),
-    )
-
-
-def _waveform_curve(contact: Judged) -> xr.Dataset:
-    """Return the waveforms of a curve as a dataset for the figures."""
-    rows = contact.mode.speeds
-    drops = [np.nan if row["drop"] is None else row["drop"] for row in rows]
-    columns = {
-        "waveform": [str(row["waveform"]) for row in rows],
-        "drop": np.array(drops, float),
-        "hover": [_waveform_tooltip(contact, row) for row in rows],
-        "link": [contact.curve.run_names[0]] * len(rows),
-    }
-    labels = labels_of(contact.curve)
-    return xr.Dataset(
-        {name: ("sliding_speed", values) for name, values in columns.items()},
-        {"sliding_speed": [row["sliding_speed_m_s"] for row in rows]},
-        {
-            "surface": labels["surface"],
-            "medium": labels["medium"],
-            "normal_force_N": labels["load"],
-            "runs": labels["runs"],
-        },
-    )
-
-
-def _waveform_note(waveforms: Collection[str]) -> str:
-    if set(waveforms) <= _STEADY:
-        return "Class for each condition and speed."
-    undecided = " or not decided" if _UNDECIDED in waveforms else ""
-    return f"Open: steady sliding{undecided}; filled: friction rises and falls."
-
-
-def _waveform_tooltip(contact: Judged, row: Mapping[str, Any]) -> str:
-    lines = [_name(contact.curve), f"v = {plain_speed(row['sliding_speed_m_s'])}"]
-    lines.append(" ".join(filter(None, (row["regularity"], row["waveform"]))))
-    if row["drop"] is not None:
-        lines.append(f"µ drops by {number(row['drop'])} on average")
-    if row["recurrence_distance_m"] is not None:
-        lines.append(f"every {number(1e6 * row['recurrence_distance_m'])} µm")
-    return "\n".join(lines)
-
-
-def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> FigureSpec:
-    series = []
-    for contact in judged:
-        rows = [row for row in contact.mode.speeds if row["dominant_frequency_Hz"]]
-        if rows:
-            series.append(
-                Series(
-                    _system(contact.curve),
-                    [row["sliding_speed_m_s"] for row in rows],
-                    [row["dominant_frequency_Hz"] for row in rows],
-                    style="points",
-                    colour=colours[contact.curve.name],
-                    hover=[_waveform_tooltip(contact, row) for row in rows],
-                    link=(contact.curve.run_names[0],),
-                    **labels_of(contact.curve),
-                )
-            )
-    return FigureSpec(
-        "sliding-frequencies",
-        "sliding",
-        "Frequency of the strongest oscillation",
-        "With a fixed slip distance, the frequency is proportional to the speed. A resonance "
-        "keeps its frequency.",
-        "Dominant frequency over sliding speed.",
-        (Panel(SPEED_AXIS, Axis("frequency", "Hz", log=True)),),
-        tuple(series),
-    )
+    own = places(system_of(curve) for curve in curves)
+    return {curve.name: own[system_of(curve)] for curve in curves}
 
 
 class _Opened(NamedTuple):
@@ -236,7 +135,8 @@ def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Opene
     labels |= {"load": None, "runs": (contact.slow.run,)}
     colour = colours[contact.curve.name]
     first = contact.slow.segments[0][0]
-    return _Opened(_name(contact.curve), labels, colour, contact.slow.run, traces, slip, first)
+    name = condition_of(contact.curve)
+    return _Opened(name, labels, colour, contact.slow.run, traces, slip, first)
 
 
 def _trace(
