@@ -12,8 +12,9 @@ from tribolab.reading.interpret.names import matches
 from tribolab.reading.text.first_bytes import peek
 from tribolab.reading.unknown.columns import evidence, text_evidence
 from tribolab.reading.unknown.columns.decide import decide
-from tribolab.reading.unknown.columns.evidence import RULES, Facts, Rule
+from tribolab.reading.unknown.columns.evidence import Facts, Rule
 from tribolab.reading.unknown.columns.labels import bare_name, labelled
+from tribolab.reading.unknown.columns.motion_evidence import MOTION_RULES
 from tribolab.reading.unknown.columns.text_evidence import (
     legend_evidence,
     mean_coefficient_evidence,
@@ -22,6 +23,7 @@ from tribolab.reading.unknown.columns.text_evidence import (
 from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
 from tribolab.reading.unknown.model import DraftColumn
 
+RULES = (*evidence.RULES, *MOTION_RULES)
 N = 60
 T = np.arange(N) / 10
 TURNS = np.sign(np.sin(T))

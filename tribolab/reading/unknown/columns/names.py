@@ -15,6 +15,7 @@ from tribolab.reading.unknown.columns.cells import counted_from
 from tribolab.reading.unknown.columns.decide import SIGNALS, decide
 from tribolab.reading.unknown.columns.evidence import RULES, Facts
 from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.columns.motion_evidence import MOTION_RULES
 from tribolab.reading.unknown.columns.proven import restrict_to_proofs
 from tribolab.reading.unknown.columns.text_evidence import (
     legend_evidence,
@@ -49,6 +50,7 @@ def decide_by_name(
     placed: bool = False,
 ) -> tuple[Kind, list[DraftColumn]]:
     """Decide the columns of a table by their names, and with them what kind of file it is."""
+    general = (*RULES, *MOTION_RULES)
     bare = _without_tag([bare_name(column) for column in columns])
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
@@ -56,10 +58,10 @@ def decide_by_name(
     best = {options[0].quantity for options in run if options}
     profile = {options[0].quantity for options in scan if options}
     if not best & _OF_RUN and ({"x", "height"} <= profile or (placed and "height" in profile)):
-        return "scan", decide(Facts(columns, bare, scan, numbers, "scan"), RULES)
+        return "scan", decide(Facts(columns, bare, scan, numbers, "scan"), general)
     kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"
     rules = (
-        *RULES,
+        *general,
         legend_evidence(layout),
         stated_load_evidence(layout),
         mean_coefficient_evidence(layout),
