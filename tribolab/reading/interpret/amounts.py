@@ -1,4 +1,4 @@
-"""Amounts stated by a file or its name, i.e. numbers with a unit, and queries for them."""
+"""Amounts, i.e. numbers with a unit, that a file or its name states, and how to query them."""
 
 from __future__ import annotations
 
@@ -19,21 +19,23 @@ class Amount(NamedTuple):
     Attributes
     ----------
     name
-        Name in a dialect.
+        Name of the value in a dialect.
     pattern
-        Pattern of the number in `text`, the line or the name.
+        Regular expression whose group 1 is the number in `text`.
     unit, to
         Its unit, and the SI unit of its dimension, if known.
+    text
+        The line, attribute or file name that states the number.
     source
         ``preamble``, ``step`` or ``file name``.
     own_unit
-        The unit as in the file, also of a weight.
+        The unit as written in the file, also where `unit` is None, as for weights.
     scale
-        Factor of the number, e.g. 0.5 for a diameter if a radius is needed.
+        Factor on the number, e.g. 0.5 for a diameter if a radius is needed.
     key
         Normalised name in the file.
     guess
-        Part of it that is a guess.
+        Guess about the amount that the user has to confirm; "" if there is none.
     """
 
     name: str
@@ -59,15 +61,15 @@ class Amount(NamedTuple):
         return self.scale * self.number
 
     def means(self, *concepts: str) -> bool:
-        """Whether its name in the file matches one of some concepts of settings.toml."""
+        """Whether its name in the file means any of the given concepts of settings.toml."""
         return any(key_pattern(concept).search(self.key) for concept in concepts)
 
     def is_in(self, si_unit: str) -> bool:
-        """Whether its unit converts to an SI unit; a weight converts to newtons."""
+        """Whether its unit converts to the given SI unit; weights convert to newtons."""
         return converts(self._unit(si_unit), si_unit)
 
     def si(self, si_unit: str) -> float:
-        """Return its value in an SI unit; NaN if it has another dimension."""
+        """Return its value in the given SI unit; NaN if the dimension differs."""
         if not self.is_in(si_unit):
             return float("nan")
         return self.scale * self.number * conversion(self._unit(si_unit), si_unit)[0]
@@ -85,14 +87,14 @@ class Amounts(tuple[Amount, ...]):
     def of(
         self, *concepts: str, unit: str | None = None, but: Sequence[str] = (), source: str = ""
     ) -> Amounts:
-        """Return the amounts of any of some concepts.
+        """Return the amounts that mean any of the given concepts.
 
         Parameters
         ----------
         concepts
-            Names in settings.toml; every amount without any.
+            Names in settings.toml; without concepts all amounts are returned.
         unit
-            SI unit to which theirs converts; "" for amounts without unit.
+            SI unit to which the amounts must convert; "" for amounts without unit.
         but
             Concepts to exclude.
         source
@@ -110,19 +112,19 @@ class Amounts(tuple[Amount, ...]):
     def only(
         self, *concepts: str, unit: str | None = None, but: Sequence[str] = (), source: str = ""
     ) -> Amount | None:
-        """Return the only amount of some concepts; None if there are none or several."""
+        """Return the only amount that `of` finds; None if it finds none or several."""
         found = self.of(*concepts, unit=unit, but=but, source=source)
         return found[0] if len(found) == 1 else None
 
 
 _SUFFIX = re.compile(r"\.[A-Za-z]\w{0,4}$")
 _FORCE = re.compile(r"(?:^|_)\d+(?:\.\d+)?(?P<unit>N|mN)(?=_|$)")
-# "T11_0.1m-s_10N.csv", "PAO_20N_100mms": a name has no stroke; "100ms" is a time
+# "T11_0.1m-s_10N.csv", "PAO_20N_100mms": m/s without its slash; but "100ms" is a time
 _SPEED = re.compile(r"(?:^|_)\d+(?:\.\d+)?(?P<unit>[mu]?m-s|[mu]ms)(?=_|$)")
 
 
 def amounts_of_name(name: str) -> list[Amount]:
-    r"""Return the amounts in a file name: the load.
+    r"""Return the load in a file name, as a list; empty if there is none.
 
     Examples
     --------
@@ -134,7 +136,7 @@ def amounts_of_name(name: str) -> list[Amount]:
 
 
 def speed_of_name(name: str) -> Amount | None:
-    """Return the speed in a file name, which need not be how fast it slides.
+    """Return the speed in a file name, which may be another than the sliding speed.
 
     >>> speed_of_name("T11_0.1m-s_10N.csv").si("m/s"), speed_of_name("a_100ms.csv")
     (0.1, None)

@@ -1,7 +1,7 @@
 """Derivation of quantities from known ones by rules of physics, and missing inputs.
 
-Known are columns, amounts stated in text, and a person's answers. The rules are those of
-physics.toml; a member of a rule that cannot be filled must be asked for.
+Known quantities are columns, amounts stated in text, and the user's answers. The rules are those of
+physics.toml; the user is asked for a quantity that no rule gives.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _Source = TypeVar("_Source")
 
 
 class Given(NamedTuple, Generic[_Source]):
-    """Known quantity: symbol in a formula, source, and number [SI] if it is one."""
+    """Known quantity with its symbol in formulas, its source, and its value [SI] if it has one."""
 
     quantity: str
     symbol: str
@@ -28,7 +28,7 @@ class Given(NamedTuple, Generic[_Source]):
 
 
 class Derivation(NamedTuple, Generic[_Source]):
-    """Proof tree of a quantity: known, or derived by a rule from others."""
+    """Derivation tree of a quantity, which is either known or follows from others by a rule."""
 
     quantity: str
     given: Given[_Source] | None = None
@@ -37,7 +37,7 @@ class Derivation(NamedTuple, Generic[_Source]):
 
     @property
     def formula(self) -> str:
-        """Formula of the known quantities, in a dialect's notation."""
+        """The quantity as a formula of known quantities, in the notation of dialects."""
         if self.given is not None or self.rule is None:
             return self.given.symbol if self.given is not None else ""
         parts = {need.quantity: need.formula for need in self.needs}
@@ -51,14 +51,14 @@ class Derivation(NamedTuple, Generic[_Source]):
 
     @property
     def leaves(self) -> tuple[Given[_Source], ...]:
-        """Known quantities on which it depends, each once."""
+        """Known quantities on which the derived quantity depends, each once."""
         if self.given is not None:
             return (self.given,)
         return tuple(dict.fromkeys(leaf for need in self.needs for leaf in need.leaves))
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether a rule that it uses may be invalid for these numbers."""
+        """Whether a rule used in the derivation may be invalid for these numbers."""
         return any(need.is_doubtful for need in self.needs) or (
             self.rule is not None and _in_doubt(self.rule, self.needs)
         )
@@ -74,7 +74,7 @@ def derive(
     *,
     without: frozenset[str] = frozenset(),
 ) -> Derivation[_Source] | None:
-    """Return the derivation of a quantity; None if it is not possible.
+    """Return how a quantity can be derived from known ones; None if this is not possible.
 
     Parameters
     ----------
@@ -113,9 +113,9 @@ def missing_members(
     *,
     without: frozenset[str] = frozenset(),
 ) -> tuple[str, ...]:
-    """Return the inputs that are missing to derive a quantity; empty if none are.
+    """Return the inputs that are missing to derive a quantity; empty if nothing is missing.
 
-    They are members of a rule whose other members are known; else the quantity itself.
+    These are the unknown inputs of a rule whose other inputs are known, else the quantity itself.
 
     Examples
     --------
@@ -141,7 +141,7 @@ def missing_members(
 
 
 def rules_for(goal: str, facts: Collection[str]) -> Iterator[tuple[Rule, tuple[str, ...]]]:
-    """Yield the rules that give a quantity, and their inputs; a rate requires what it changes."""
+    """Yield each rule that gives a quantity, with its inputs; a rate follows from its integral."""
     for rule in rules():
         if rule.use == "proof" or (rule.condition and rule.condition not in facts):
             continue

@@ -1,4 +1,4 @@
-"""Inputs missing for friction over sliding speed, and how to state them."""
+"""Inputs that are missing for friction against sliding speed, and how to state them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 from tribolab.reading.interpret.derive import Given, Known, missing_members
 
 Goal = Literal["friction", "load", "speed"]
-_GOALS: dict[Goal, tuple[str, ...]] = {  # only the first may be derived by rules
+_GOALS: dict[Goal, tuple[str, ...]] = {  # any is enough; only the first may be derived
     "friction": ("friction_force", "friction_coefficient", "shear_stress"),
     "load": ("normal_force", "normal_stress", "friction_coefficient"),
     "speed": ("sliding_velocity", "position", "set_speed"),
@@ -36,7 +36,7 @@ _OPTIONS = {
     "track_radius": "--radius 15mm",
     "sliding_velocity": "--speed 10mm/s",
 }
-_SHUTTLES = (
+_REVERSING = (
     "how long the strokes are and how often they come, for the sliding speed (the friction turns "
     "over again and again)"
 )
@@ -47,7 +47,7 @@ _STROKES = (
 
 
 class MissingInput(NamedTuple):
-    """Missing quantity, its purpose, and facts on the rig."""
+    """Missing quantity, what it is needed for, and facts about the rig."""
 
     member: str
     goals: tuple[Goal, ...]
@@ -55,44 +55,44 @@ class MissingInput(NamedTuple):
 
     @property
     def what(self) -> str:
-        """What is missing, and for what."""
+        """The missing input and its purpose, in words."""
         if self.member == "track_radius":
             wanted = {"friction": "the friction", "speed": "the sliding speed"}
             return f"the radius of the track, for {' and '.join(wanted[g] for g in self.goals)}"
-        return _SHUTTLES if self._shuttles else _WHAT[self.member]
+        return _REVERSING if self._reverses else _WHAT[self.member]
 
     @property
     def option(self) -> str:
-        """Option of the command line that states it, with an example; "" without one."""
-        return "" if self._shuttles else _OPTIONS.get(self.member, "")
+        """Command-line option that states the input, with an example; "" if there is none."""
+        return "" if self._reverses else _OPTIONS.get(self.member, "")
 
     @property
-    def _shuttles(self) -> bool:
+    def _reverses(self) -> bool:
         return self.member == "sliding_velocity" and "reversals" in self.facts
 
     def __str__(self) -> str:
-        """Return what is missing, and how to state it in a file."""
+        """Return the missing input in words, and how to state it in a file."""
         if self.member == "track_radius":
             of_goals = {"friction": _FORMULA, "speed": _RADIUS}
             return f"{self.what}: {', and '.join(of_goals[goal] for goal in self.goals)}"
         if self.member == "stroke":
             turns = ", with source = 'stroke' and how often the crank turns"
             return f"{self.what}: {_STROKE}{turns if 'crank' in self.facts else ''}"
-        return f"{self.what}: {_STROKES if self._shuttles else _HOW[self.member]}"
+        return f"{self.what}: {_STROKES if self._reverses else _HOW[self.member]}"
 
 
 def missing_inputs(
     known: Known[object] | Collection[str], facts: Collection[str] = ()
 ) -> list[MissingInput]:
-    """Return the missing inputs of friction, load and sliding speed that cannot be derived.
+    """Return the inputs that are missing to determine friction, load and sliding speed.
 
     Parameters
     ----------
     known
         Known inputs by quantity of physics.toml, or only their names.
     facts
-        Facts on the rig: "crank" if a rotation drives strokes, "reversals" if the friction reverses
-        as in strokes.
+        Facts about the rig: "crank" if a rotation drives strokes, "reversals" if the friction
+        reverses as in strokes.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Quantities for which the name of a column may stand."""
+"""Quantities that a column name may mean, and units at the end of names."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from tribolab.reading.unit_texts import converts, is_turns, is_unit
 from tribolab.units.quantities import quantity
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 
-_VAGUE = 0.6  # share of the score of an unambiguous word
-_OF_DEVICE = 0.98
-_TERM = 0.98  # score of a whole term of a language
-_LATE = 0.2  # largest reduction for a symbol that is late in the list
-KNOWN_WORD = 0.7  # share of known words above which a name is certain
+_VAGUE = 0.6  # factor on the score of a word that several quantities share
+_OF_DEVICE = 0.98  # factor on the score of a name without its device: "Fz" of "DAQ.Fz"
+_TERM = 0.98  # score of a name that is a complete term: "normal force", "Reibkraft"
+_LATE = 0.2  # largest reduction of the score of a symbol that is late in the list
+KNOWN_WORD = 0.7  # lowest score of a name whose meaning is certain
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
 _ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)
@@ -34,12 +34,12 @@ _INSTEAD = {"position": "height_displacement"}
 _ANGLES = ("deg", "rad", "°")
 _MAX_NAME = 1000  # characters of a name, as searches take quadratic time
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
-# special meaning of a unit for a quantity: weights for forces
+# units that mean another unit for some quantities, by SI unit: g is gf for a force
 _MEANT = {"N": WEIGHTS}
 _OF_HEIGHTS = {"m": {"A": "angstrom"}}
 _NO_TORQUE = ("N", "1", "Pa")
 COUNTS = "counts"
-# columns of time that are named by their unit, e.g. of microcontroller clocks
+# names of time columns that are only a unit, e.g. from microcontroller clocks
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
 _CLOCKS |= {"usecs": "us", "mus": "us", "sec": "s", "secs": "s"}
 _RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
@@ -54,15 +54,15 @@ _SYMBOLS = frozenset(
 
 
 class Match(NamedTuple):
-    """Quantity for which a name may stand; a higher score is more certain."""
+    """Quantity that a column name may mean; a higher score is more certain."""
 
     quantity: str
     score: float
-    unit: str | None  # if it differs from the written one: g as gf
+    unit: str | None  # unit to read instead of the written one: gf for g
 
 
 def device_of(name: str) -> tuple[str, str]:
-    """Split the name of a channel into a device, which some programs prepend, and its own name.
+    """Split a channel name into the device, which some programs prepend, and the rest.
 
     >>> device_of("DAQ.Fz"), device_of("Coeff. of friction"), device_of("Fz")
     (('DAQ', 'Fz'), ('', 'Coeff. of friction'), ('', 'Fz'))
@@ -72,7 +72,7 @@ def device_of(name: str) -> tuple[str, str]:
 
 
 def is_axis(name: str) -> bool:
-    """Whether a name is that of a machine axis position: 'Stage.X', 'X axis position'.
+    """Whether a column name means the position of a machine axis: 'Stage.X', 'X axis position'.
 
     >>> is_axis("XYStage.X"), is_axis("Position")
     (True, False)
@@ -85,7 +85,7 @@ _ABOUT_UNIT = re.compile(r"(?<=\w)\s{0,3}\([^()]{1,30}\)\s*$")  # "uin (microinc
 
 
 def length_unit(text: str) -> str:
-    """Return a text that is only a unit of length in standard notation; else "".
+    """Return the standard notation of a text that is only a unit of length; else "".
 
     >>> length_unit("[nm]"), length_unit("Mikrometer"), length_unit("nm per step")
     ('nm', 'um', '')
@@ -107,7 +107,7 @@ _PER = re.compile(r"[\s_]+per[\s_]+|(?<=[mN°])_(?=(?:s|min|h)$)")  # mm_per_s, 
 
 @functools.lru_cache(maxsize=4096)
 def split_unit(label: str) -> tuple[str, str | None]:
-    """Split a name without brackets and the unit at its end: 'Lateral um', 'Force/N'.
+    """Split a column name without brackets from the unit at its end: 'Lateral um', 'Force/N'.
 
     >>> split_unit("Lateral um"), split_unit("F_x"), split_unit("Force/N")
     (('Lateral', 'um'), ('F_x', None), ('Force', 'N'))
@@ -148,7 +148,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
 
 
 def _symbol_and_unit(label: str) -> tuple[str, str] | None:
-    """Split a unit from a symbol, even if both resemble another symbol: Ff_N is not F/Fn.
+    """Split a symbol from its unit, even if together they look like a ratio: Ff_N is not F/Fn.
 
     A unit may follow a slash, as in ISO 80000-1.
 
@@ -172,7 +172,7 @@ def _symbol_and_unit(label: str) -> tuple[str, str] | None:
 
 
 def is_count(unit: str) -> bool:
-    """Whether a unit means counts of a converter, without a calibration factor.
+    """Whether a unit means raw counts of an analogue-to-digital converter.
 
     >>> is_count("Counts"), is_count("N")
     (True, False)
@@ -181,7 +181,7 @@ def is_count(unit: str) -> bool:
 
 
 def is_stroke_length(name: str) -> bool:
-    """Whether a name means the length of a stroke.
+    """Whether a column name means the stroke length.
 
     >>> is_stroke_length("Stroke"), is_stroke_length("Set stroke length")
     (True, True)
@@ -193,7 +193,7 @@ def is_stroke_length(name: str) -> bool:
 
 
 def is_stroke_frequency(name: str, unit: str | None) -> bool:
-    """Whether name and unit mean the frequency of strokes.
+    """Whether a column name and its unit mean the stroke frequency.
 
     >>> is_stroke_frequency("Frequency", "Hz"), is_stroke_frequency("Speed", "mm/s")
     (True, False)
@@ -204,7 +204,7 @@ def is_stroke_frequency(name: str, unit: str | None) -> bool:
 
 
 def is_date(name: str) -> bool:
-    """Whether a name means dates only, with or without times of day.
+    """Whether a column name means a date and nothing else, with or without the time of day.
 
     >>> is_date("Date and time"), is_date("Datum der Messung")
     (True, False)
@@ -213,7 +213,7 @@ def is_date(name: str) -> bool:
 
 
 def is_track_radius(name: str) -> bool:
-    """Whether a normalised column name means the radius of a track.
+    """Whether a normalised column name means the track radius.
 
     >>> is_track_radius("trackradius"), is_track_radius("radiomediodelapista")
     (True, True)
@@ -270,11 +270,11 @@ def _matches(name: str, unit: str | None, scan: bool) -> tuple[Match, ...]:
         if torque and known.unit in _NO_TORQUE:
             continue
         if score and (known.unit != "1" if counted else fits):
-            # a unit of only one quantity identifies it, whatever the name
-            told = alone or (turns and word.quantity == "rotation_speed")
-            score = KNOWN_WORD + (1 - KNOWN_WORD) * score if told else score
-            held = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
-            options.append(Match(held, score, read_as))
+            # a unit that only one quantity has identifies this quantity, whatever the name
+            by_unit = alone or (turns and word.quantity == "rotation_speed")
+            score = KNOWN_WORD + (1 - KNOWN_WORD) * score if by_unit else score
+            meant = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
+            options.append(Match(meant, score, read_as))
     if not scan and role != "set" and is_turns(unit or ""):
         options.append(Match("rotation_speed", KNOWN_WORD, None))
     if not scan and _ACROSS.search(name):  # "Z position" is perpendicular to the motion
@@ -286,7 +286,7 @@ def _matches(name: str, unit: str | None, scan: bool) -> tuple[Match, ...]:
 
 
 def _is_ratio(name: str) -> bool:
-    """Whether a name divides a symbol of the friction force by one of the normal force.
+    """Whether a column name is a ratio of the symbols of friction force and normal force.
 
     >>> _is_ratio("F_R/F_N"), _is_ratio("F / W"), _is_ratio("v/s")
     (True, True, False)
@@ -298,7 +298,7 @@ def _is_ratio(name: str) -> bool:
 
 @functools.lru_cache(maxsize=256)
 def _count_quantities(unit: str) -> int:
-    """Return the number of run quantities that can have a unit."""
+    """Return how many quantities of a run can be in a given unit."""
     known = [quantity(word.quantity) for word in known_words("run")]
     return sum(converts(unit, kind.unit, kind.bare) for kind in known)
 
@@ -313,5 +313,5 @@ def _score(text: str, word: Word) -> float:
 
 
 def _covered_share(text: str, stems: tuple[str, ...]) -> float:
-    """Return the share of a name covered by its longest known stem."""
+    """Return the share of the letters of a name that its longest known stem covers."""
     return max((len(stem) for stem in stems if stem in text), default=0) / len(text)

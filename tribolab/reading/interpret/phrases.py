@@ -18,8 +18,8 @@ from tribolab.reading.numbers import NUMBER, Number, decimal, number_pattern, nu
 from tribolab.reading.unit_texts import is_unit
 
 LONGEST_LINE = 300  # characters of a line that are inspected
-_MAX_OF_LINE = 8  # most numbers of a line
-_CAPITALS = 3  # letters of a unit that may be in capitals
+_MAX_OF_LINE = 8  # numbers of a line that are returned
+_CAPITALS = 3  # fewest letters of a unit that may be written in capitals: LBF
 _ENDS = " \t:=~≈＝：-–"
 _CLAUSES = re.compile(
     rf"{CLAUSE_END}|\b(?:(?<!load )(?<!force )(?<!weight )on|{alternatives('clause')})\b"
@@ -34,7 +34,7 @@ _SINGLE = re.compile(
 
 
 class Phrase(NamedTuple):
-    """Number with a unit in a line; `key` are the words before it in its clause."""
+    """Number with a unit in a line; `key` is the normalised text before it in the same clause."""
 
     key: str
     number: str
@@ -78,7 +78,7 @@ def phrases(line: str) -> list[Phrase]:
 
 
 def _unit_of(number: Number) -> str:
-    """Return the unit of a number, in lower case if written in capitals: 30 LBF; "" without one."""
+    """Return the unit of a number, LBF as lbf; "" if the word after the number is no unit."""
     for unit in (number.unit, number.unit.partition("/")[0]):
         unit = unit if len(unit) < _CAPITALS or is_unit(unit) else unit.lower()
         if unit and is_unit(unit):
@@ -87,7 +87,7 @@ def _unit_of(number: Number) -> str:
 
 
 def label_of(line: str) -> str:
-    """Return the normalised text before the first colon or cell of a line; "" without any.
+    """Return the normalised label at the start of a line, before a colon or delimiter; else "".
 
     >>> label_of("Shaft: steel, Ø 80 mm"), label_of('"Anneau";"acier 4620"'), label_of("Ø 80 mm")
     ('shaft', 'anneau', '')
@@ -97,7 +97,7 @@ def label_of(line: str) -> str:
 
 
 def single_number(line: str) -> tuple[str, float, str] | None:
-    """Return words, number and following word of a line with a single number; else None.
+    """Return label, number and following word of a line with exactly one number; else None.
 
     >>> single_number("Gain x 2,5 (set)"), single_number("Averaging: 8 samples")
     (('Gain', 2.5, ''), ('Averaging', 8.0, 'samples'))

@@ -26,19 +26,19 @@ from tribolab.reading.unit_texts import converts
 from tribolab.units.quantities import QUANTITIES
 from tribolab.units.spellings import WEIGHTS
 
-_MAX_MEMBERS = 500  # most combinations of columns for one rule
+_MAX_MEMBERS = 500  # combinations of columns that are tested for one rule
 Units = dict[int, str]
 
 
 class Candidate(NamedTuple):
-    """Column with its possible quantities, and its unit, None if not stated."""
+    """Possible quantities of a column, and its unit (None if not stated)."""
 
     quantities: frozenset[str]
     unit: str | None
 
 
 class Proof(NamedTuple):
-    """Quantity and unit of a column, and the rules that its numbers obey."""
+    """Proven quantity and unit of a column, and the rules of physics that prove them."""
 
     quantity: str
     unit: str
@@ -47,7 +47,7 @@ class Proof(NamedTuple):
 
 class _Fit(NamedTuple):
     rule: Rule
-    places: tuple[int, ...]  # of the result and the inputs
+    places: tuple[int, ...]  # column indices of the rule's result and inputs
     spread: float
     units: list[tuple[str, ...]]
 
@@ -57,9 +57,9 @@ class _Fit(NamedTuple):
 
 
 def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Proof]:
-    """Return the quantities and units of columns, as far as their numbers prove them.
+    """Return the quantities and units of those columns whose numbers prove them.
 
-    Their places count from 0; columns with an ambiguous unit are left out.
+    Keys are column indices from 0. Columns whose unit remains ambiguous are left out.
     """
     roles: dict[int, str] = {}
     fits: list[_Fit] = []
@@ -81,12 +81,12 @@ def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Pro
 
 
 def known_quantities() -> frozenset[str]:
-    """Return the quantities that rules may prove."""
+    """Return the quantities that can be proven by rules of physics."""
     return frozenset(name for rule in rules() if rule.proves for name in rule.members)
 
 
 def _members(rule: Rule, candidates: Sequence[Candidate]) -> Iterator[tuple[int, ...]]:
-    """Yield the combinations of distinct columns that may be the members of a rule."""
+    """Yield each combination of distinct columns that may be the quantities in a rule."""
     options = [
         [place for place, candidate in enumerate(candidates) if name in candidate.quantities]
         for name in rule.members
@@ -102,7 +102,7 @@ def _fit(
     candidates: Sequence[Candidate],
     numbers: np.ndarray,
 ) -> _Fit | None:
-    """Return the units in which columns obey a rule; None without any."""
+    """Return the units in which the columns obey a rule; None if there are no such units."""
     left = numbers[:, places[0]]
     right = _product(rule, numbers[:, places[1 : 1 + len(rule.needs)]])
     if rule.rate:
@@ -111,11 +111,11 @@ def _fit(
         steps = 0.5 * (right[1:] + right[:-1]) * np.diff(numbers[:, places[-1]])
         sums = np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))])
         left, right = np.diff(left[edges]), np.diff(sums[edges])
-    told = np.isfinite(left) & np.isfinite(right) & (right != 0)
-    told &= np.abs(left) > 0.05 * np.nanmax(np.abs(left), initial=0.0)  # few digits near zero
-    if told.sum() < (5 if rule.rate else ROWS.value):
+    usable = np.isfinite(left) & np.isfinite(right) & (right != 0)
+    usable &= np.abs(left) > 0.05 * np.nanmax(np.abs(left), initial=0.0)  # few digits near zero
+    if usable.sum() < (5 if rule.rate else ROWS.value):
         return None
-    low, ratio, high = np.quantile(left[told] / right[told], [0.1, 0.5, 0.9])
+    low, ratio, high = np.quantile(left[usable] / right[usable], [0.1, 0.5, 0.9])
     spread = (high - low) / abs(ratio) if ratio else math.inf
     if not ratio > 0 or not spread < SPREAD.value:
         return None
@@ -128,7 +128,7 @@ def _fit(
 
 
 def _expected(rule: Rule, units: tuple[str, ...]) -> float:
-    """Return the ratio of the two sides of a rule for numbers in given units."""
+    """Return the ratio of left to right side of a rule that its numbers have in given units."""
     factor, powers = rule.powers()
     scales = [to_si(n, u) for n, u in zip(rule.members, units, strict=True)]
     right = (s ** powers.get(n, 1) for n, s in zip(rule.members[1:], scales[1:], strict=True))
@@ -147,7 +147,7 @@ def _units(
     candidates: Sequence[Candidate],
     numbers: np.ndarray,
 ) -> Iterator[list[str]]:
-    """Yield the units in which each member of a rule has a plausible size."""
+    """Yield, for each quantity in a rule, the units that make its column plausible in size."""
     for name, place in zip(rule.members, places, strict=True):
         own = candidates[place].unit
         options = units_written()[name] if own is None else _read_as(name, own)
@@ -158,7 +158,10 @@ def _units(
 
 
 def _read_as(name: str, unit: str) -> list[str]:
-    """Return the unit of a column as a member of a rule: a force in g is in gf."""
+    """Return the unit of a column as a list, empty if it does not fit the quantity `name`.
+
+    For a force, "g" becomes "gf".
+    """
     si = si_unit(name)
     read = WEIGHTS.get(unit, unit) if si == "N" else unit
     bare = QUANTITIES[name].bare if name in QUANTITIES else None
@@ -166,7 +169,7 @@ def _read_as(name: str, unit: str) -> list[str]:
 
 
 def _only_units(fits: Sequence[_Fit]) -> Units:
-    """Return the units of columns that all rules together determine uniquely."""
+    """Return the units that all rules together determine uniquely, by column index."""
     options = [list(fit.units) for fit in fits]
     domains: dict[int, set[str]] = {}
     changed = True

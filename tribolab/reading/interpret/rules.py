@@ -1,4 +1,4 @@
-"""Rules of physics.toml, and their SI units."""
+"""Rules of physics between quantities, from physics.toml, and the units of the quantities."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _WORD = re.compile(
 
 
 class Rule(NamedTuple):
-    """Rule ``gives = formula`` in SI units; with `rate`, the formula is its rate of change."""
+    """Rule ``gives = formula`` in SI units; with `rate`, the formula is its time derivative."""
 
     gives: str
     formula: str
@@ -31,18 +31,18 @@ class Rule(NamedTuple):
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Names in the formula."""
+        """Quantities in the formula."""
         names = (word["name"] for word in _WORD.finditer(self.formula))
         return tuple(dict.fromkeys(name for name in names if name not in (None, "pi")))
 
     @property
     def members(self) -> tuple[str, ...]:
-        """Quantities that it relates."""
+        """All quantities that the rule relates."""
         return (self.gives, *self.needs, *(("time",) if self.rate else ()))
 
     @property
     def proves(self) -> bool:
-        """Whether columns can be tested by it: a product of recordable quantities."""
+        """Whether columns can prove the rule: a product of quantities that instruments record."""
         known = units_written()
         return (
             self.use != "derivation"
@@ -51,7 +51,7 @@ class Rule(NamedTuple):
         )
 
     def powers(self) -> tuple[float, dict[str, int]]:
-        """Return the factor and the powers of the members of a product."""
+        """Return the constant factor of the formula and the exponent of each quantity in it."""
         factor, powers, sign = 1.0, dict[str, int](), 1
         for word in _WORD.finditer(self.formula):
             if word["sign"]:
@@ -80,7 +80,7 @@ def rules() -> tuple[Rule, ...]:
 
 
 def units_written() -> Mapping[str, list[str]]:
-    """Return the units that instruments use for members of rules, by quantity."""
+    """Return the units that instruments use, by quantity."""
     return _toml()["unit"]
 
 
@@ -91,7 +91,7 @@ def plausible_sizes() -> Mapping[str, tuple[float, float]]:
 
 @functools.cache
 def si_unit(name: str) -> str:
-    """Return the SI unit of a member of a rule."""
+    """Return the SI unit of a quantity in a rule."""
     if name in QUANTITIES:
         return quantity(name).unit
     return next(unit for unit, names in _toml()["si"].items() if name in names)
@@ -99,7 +99,7 @@ def si_unit(name: str) -> str:
 
 @functools.cache
 def to_si(name: str, unit: str) -> float:
-    """Return the factor from a unit to the SI unit of the rules."""
+    """Return the factor that converts a quantity from a unit to its SI unit."""
     if name in QUANTITIES:
         return unit_conversion(unit, name)[0]
     return conversion(unit, si_unit(name))[0]

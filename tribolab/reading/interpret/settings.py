@@ -1,4 +1,4 @@
-"""Settings in text: each line is parsed once, into amounts with a unit and texts with a key."""
+"""Settings in text: each line is parsed once, into numbers with units and texts with keys."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ from tribolab.reading.unit_texts import (
 )
 from tribolab.units.spellings import WEIGHTS, unit_in_words
 
-_MAX_ENTRY = 1000  # characters of a line with a key, as searches take quadratic time
+_MAX_ENTRY = 1000  # characters of a line that are parsed, as searches take quadratic time
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"; of testXpert
 # "Test speed";"mm/min";"100"
-_SAYS, _IN_CELLS = (  # the latter: "Dead weight,500,g"
+_ENTRY, _IN_CELLS = (  # the latter: "Dead weight,500,g"
     re.compile(
         rf"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)"
         rf"(?:\"?\s*[:：=]?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}})"
@@ -69,7 +69,7 @@ _EITHER_WAY = re.compile(r"^\s*(?:\+/?-|±)")
 _STEP_TITLE = re.compile(rf"\W*{alternatives('step')}\W*\d", re.IGNORECASE)
 _STEP = re.compile(rf"{alternatives('step')}\d*n?")
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
-# settings that a sentence may state in a unit of each dimension
+# settings that are looked for in sentences, by the SI unit of the number
 _WANTED = {
     "m": (
         *("track_radius", "track_diameter", "diameter", "outer_size", "turning", "tip_radius"),
@@ -134,7 +134,7 @@ def amounts_of(lines: tuple[str, ...], most: int) -> Amounts:
 
 @functools.lru_cache(maxsize=64)
 def texts_of(lines: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
-    """Return text settings by key; the drive of strokes under ``drive``.
+    """Return pairs of key and text for settings in words; ``drive`` is the key of a stroke drive.
 
     >>> texts_of(("Drive: crank", "Units um", "an eccentric drive"))
     (('Drive', 'crank'), ('Units', 'um'), ('drive', 'crank'), ('drive', 'eccentric drive'))
@@ -143,15 +143,15 @@ def texts_of(lines: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     entries = (_TEXT.match(line.strip()) for line in lines)
     found = [(match["key"], match["text"].rstrip('"; ,')) for match in entries if match]
     alone = (_UNIT_ALONE.match(line.strip()) for line in lines)
-    found += [(match["key"], match["unit"]) for match in alone if match and _is_of_unit(match)]
-    drives = (_said_of_drive(line[:LONGEST_LINE]) for line in lines)
+    found += [(match["key"], match["unit"]) for match in alone if match and _names_a_unit(match)]
+    drives = (_drive_in(line[:LONGEST_LINE]) for line in lines)
     return (*found, *(("drive", text) for text in drives if text))
 
 
-def _said_of_drive(line: str) -> str:
-    """Return the words of a line that name a drive; "" without any.
+def _drive_in(line: str) -> str:
+    """Return the words of a line that name the drive of the strokes; "" if there are none.
 
-    >>> _said_of_drive("Tribómetro biela-manivela")
+    >>> _drive_in("Tribómetro biela-manivela")
     'biela-manivela'
     """
     match = text_pattern("drive").search(plain_text(line))
@@ -164,13 +164,13 @@ def _said_of_drive(line: str) -> str:
     return ""
 
 
-def _is_of_unit(alone: re.Match[str]) -> bool:
+def _names_a_unit(alone: re.Match[str]) -> bool:
     first, *more = alone["key"].lower().split()
     return first in keys_of("unit") or ("," in alone["gap"] and not more)
 
 
 def _entry(line: str) -> re.Match[str] | None:
-    entry = _SAYS.match(line) or _IN_CELLS.match(line) or _TURNS_FIRST.match(line)
+    entry = _ENTRY.match(line) or _IN_CELLS.match(line) or _TURNS_FIRST.match(line)
     # "Scan length 1.5 mm, 3000 points" is a sentence; "Load (steps 1 a 4);40 N" is not
     return None if entry and phrases(_BRACKETS.sub("", entry["key"])) else entry
 
@@ -185,11 +185,11 @@ def _separate_units(lines: tuple[str, ...]) -> dict[str, str]:
 
 
 def _of_entry(entry: re.Match[str], units: Mapping[str, str]) -> Amount:
-    """Return the amount of a line that contains nothing else."""
+    """Return the amount of a line that states one setting and nothing else."""
     key, unit = _key_and_unit(entry, units)
     digits = r"[-+\d.eE]+" if entry.re is _IN_CELLS else r"[-+\d.,eE]+"
     before = escaped(entry["before"].strip())
-    if _STEP_TITLE.match(key):  # the number differs in the next step
+    if _STEP_TITLE.match(key):  # the step number in the key changes from step to step
         before = re.sub(r"\d+", r"\\d+", before)
     behind = entry.string[entry.end("before") :][:4]
     signs = r"(?:\+/?-|±)?\s*" if _EITHER_WAY.search(behind) else ""
@@ -231,7 +231,7 @@ def _key_and_unit(entry: re.Match[str], units: Mapping[str, str]) -> tuple[str, 
 
 
 def _of_phrase(phrase: Phrase) -> Amount | None:
-    """Return the amount of a sentence, if it is relevant for a run or profile."""
+    """Return the amount that a phrase states if a run or profile needs it, else None."""
     dimension = _dimension(phrase.unit)
     weight = phrase.unit in WEIGHTS
     wanted = _WANTED.get("N" if weight else dimension or "", ())
@@ -255,7 +255,7 @@ def _of_phrase(phrase: Phrase) -> Amount | None:
 
 
 def _is_one_force(phrase: Phrase) -> bool:
-    """Whether a line contains a single force or weight as its first number."""
+    """Whether a line states exactly one force or weight, with no number before it."""
     forces = [
         said for said in phrases(phrase.line) if converts(said.unit, "N") or said.unit in WEIGHTS
     ]
@@ -268,7 +268,7 @@ def _dimension(unit: str | None) -> str | None:
 
 
 def add_unique(found: dict[str, Amount], amount: Amount) -> None:
-    """Store an amount under a unique name."""
+    """Add an amount to `found` under a unique name, unless it has the same name and key as one."""
     if amount.name in found and amount.key == found[amount.name].key:
         return
     name, number = amount.name, 1

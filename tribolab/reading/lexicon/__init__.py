@@ -1,1 +1,1 @@
-"""What files call things, as data in TOML files, and how it is looked up."""
+"""Lexicon: names that files use for quantities and settings, as TOML files, and their lookup."""

@@ -1,6 +1,6 @@
-"""The words of files, as data: which concept a name stands for, whatever the language.
+"""Lookup of the concept that a name in a file means, in any language.
 
-The lists are the TOML files beside this module; here they are loaded, and looked up.
+The word lists are the TOML files next to this module.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 Role = Literal["", "set", "measured", "derived", "extreme"]
-LONGEST_NAME = 1000  # characters of a name that are looked at
+LONGEST_NAME = 1000  # characters of a name that are inspected
 _SPELT = {
     **{"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ø": "oe", "ł": "l", "ı": "i"},
     **{"\u00b5": "mu", "\u03bc": "mu", "\u03c4": "tau", "\u03c9": "omega", "\u03b7": "eta"},
     **{"\u03b8": "theta", "\u03d1": "theta", "\u03c3": "sigma"},
 }
 _LETTERS = str.maketrans(_SPELT)
-_ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
+_ACCENTS = re.compile("[\u0300-\u036f]")  # not Japanese voicing marks: they change the letter
 _TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 CLAUSE_END = r"[;:,=|()\[\]：；，（）、。]|\.\s+(?=[^\W\d_a-zа-яё])"  # a capital begins a sentence
 _CLAUSE = re.compile(CLAUSE_END)
 _SIGNS = re.compile(r"[^\w;]+|_")
-UNPARTED = "\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7a3"  # letters of which two make a word
-_FIRST_UNPARTED = "\u2e80"  # of the letters of languages that put no blanks between words
+UNPARTED = "\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7a3"  # Japanese, Chinese and Korean letters
+_FIRST_UNPARTED = "\u2e80"  # first letter of the scripts that put no blanks between words
 _NO_LANGUAGE = ("of", "symbols", "stems", "vague")
 
 
 class Word(NamedTuple):
-    """A concept and its names, all but `terms` normalised by `normalise_label`.
+    """A concept, such as a quantity, and its names; all but `terms` are normalised.
 
-    Symbols are whole names; of two for one concept the first is the better. Stems may stand
-    anywhere in a name. A vague stem is shared with other concepts: it is always a guess.
+    Symbols are whole names, the best first. Stems may occur anywhere in a name. Vague stems are
+    shared with other concepts, so that their meaning is always a guess.
     """
 
     quantity: str
@@ -43,12 +43,12 @@ class Word(NamedTuple):
     symbols: tuple[str, ...]
     stems: tuple[str, ...]
     vague: tuple[str, ...]
-    terms: Mapping[str, tuple[str, ...]]  # by language, as they are written
+    terms: Mapping[str, tuple[str, ...]]  # by language, as written, not normalised
 
 
 @functools.lru_cache(maxsize=8192)
 def normalise_label(name: str) -> str:
-    """Return a name without blanks, signs, capitals, umlauts and accents, of its beginning.
+    """Return a name in lower case without blanks, signs, accents and umlauts, cut if very long.
 
     >>> normalise_label("# Höhe_1"), normalise_label("Déplacement (x)")
     ('hoehe1', 'deplacementx')
@@ -60,23 +60,23 @@ def normalise_label(name: str) -> str:
 
 @functools.cache
 def known_words(of: str = "") -> tuple[Word, ...]:
-    """Return the concepts of runs, of scans, or of both and of settings, in the lexicon's order."""
+    """Return all concepts of the lexicon, or those of one kind such as "run" or "scan"."""
     known = [_word(name, block) for name, block in _toml("words").items() if name != "reviewed"]
     return tuple(word for word in known if not of or word.of == of)
 
 
 @functools.cache
 def names(concept: str) -> frozenset[str]:
-    """Return the whole names that languages have for a concept, normalised."""
+    """Return the normalised terms for a concept in all languages."""
     found = (word.terms.values() for word in known_words() if word.quantity == concept)
     return frozenset(normalise_label(t) for terms in found for line in terms for t in line)
 
 
 @functools.cache
 def eastern_words() -> frozenset[str]:
-    """Return the stems in letters beyond Latin: by which a file's encoding is told.
+    """Return the stems in non-Latin letters, from which the encoding of a file is recognised.
 
-    A single sign is none: it may stand in any wrong reading of other letters.
+    Stems of one letter are left out: any text decoded with the wrong encoding may contain them.
     """
     stems = (stem for word in known_words() for stem in (*word.stems, *word.vague))
     return frozenset(stem for stem in stems if len(stem) > 1 and not stem.isascii())
@@ -84,12 +84,12 @@ def eastern_words() -> frozenset[str]:
 
 @functools.cache
 def key_pattern(concept: str) -> re.Pattern[str]:
-    """Return a pattern for normalised names that mean a concept of settings.toml.
+    """Return a pattern that matches normalised names of a concept of settings.toml.
 
     Parameters
     ----------
     concept
-        Its forms and the terms of words.toml for it fit.
+        Name of the concept. The pattern matches its forms, and its terms in words.toml.
 
     Examples
     --------
@@ -107,14 +107,14 @@ def key_pattern(concept: str) -> re.Pattern[str]:
 
 @functools.cache
 def part_pattern(name: str) -> re.Pattern[str]:
-    """Return a pattern for one part of settings.toml, wherever it stands in a normalised name."""
+    """Return a pattern that finds the words of one part of settings.toml in a normalised name."""
     return re.compile(_part(name))
 
 
 def plain_text(text: str) -> str:
-    """Return the words of a text as `normalise_label` does, with one blank between and around them.
+    """Return the normalised words of a text, with a blank before and after each word.
 
-    A semicolon stands where a clause ends.
+    A semicolon marks the end of a clause.
 
     >>> plain_text("Nullpunkt-korrigiert; Prüfkraft: 20 N")
     ' nullpunkt korrigiert ; pruefkraft ; 20 n '
@@ -125,7 +125,7 @@ def plain_text(text: str) -> str:
 
 @functools.cache
 def text_pattern(name: str) -> re.Pattern[str]:
-    """Return a pattern for what `plain_text` gives, of the words and forms in sentences.toml.
+    """Return a pattern that finds an entry of sentences.toml in the result of `plain_text`.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def text_pattern(name: str) -> re.Pattern[str]:
 
 @functools.lru_cache(maxsize=4096)
 def mentions(name: str, text: str) -> bool:
-    """Whether a text holds one of the words or forms that sentences.toml has under a name.
+    """Whether a text contains any word or form of an entry of sentences.toml.
 
     >>> [mentions("zero_word", text) for text in ("zero force", "zeroed force")]
     [True, False]
@@ -156,7 +156,11 @@ def _text_part(part: str) -> str:
 
 
 def _stems(block: Mapping[str, Any]) -> list[str]:
-    """Return patterns of words: of languages that part them each begins one, and may go on."""
+    """Return patterns for the words of an entry; each matches at the start of a word.
+
+    A word with "*" matches anywhere, one with a final blank only whole words. In scripts without
+    blanks between words, all match anywhere.
+    """
     words = [word for key, line in block.items() if key != "forms" for word in line]
     return [
         (r"\b" if "*" not in word and plain[0] < _FIRST_UNPARTED else "")
@@ -169,15 +173,15 @@ def _stems(block: Mapping[str, Any]) -> list[str]:
 
 @functools.cache
 def plain_words(name: str) -> frozenset[str]:
-    """Return the words under a name in sentences.toml, normalised."""
+    """Return the normalised words of an entry of sentences.toml."""
     return frozenset(normalise_label(w) for line in _toml("sentences")[name].values() for w in line)
 
 
 @functools.cache
 def alternatives(name: str) -> str:
-    """Return a group of the words under a name in sentences.toml, for text as it is written.
+    """Return a regular expression for any word of an entry of sentences.toml, for raw text.
 
-    A word that ends in ``~`` may go on by nine letters.
+    A word that ends in ``~`` may have up to nine more letters.
     """
     words = dict.fromkeys(word for line in _toml("sentences")[name].values() for word in line)
     parts = (
@@ -189,7 +193,7 @@ def alternatives(name: str) -> str:
 
 @functools.cache
 def pairs_of_bodies() -> tuple[tuple[re.Pattern[str], re.Pattern[str]], ...]:
-    """Return patterns for normalised names of one and of the other of two bodies that touch."""
+    """Return pairs of patterns for the normalised names of two bodies in contact: disc and ball."""
     return tuple(
         (re.compile("|".join(pair["one"])), re.compile("|".join(pair["other"])))
         for pair in _toml("roles")["bodies"]
@@ -198,12 +202,12 @@ def pairs_of_bodies() -> tuple[tuple[re.Pattern[str], re.Pattern[str]], ...]:
 
 @functools.cache
 def keys_of(kind: Literal["unit", "name", "value", "count"]) -> tuple[str, ...]:
-    """Return what files call a unit, a name, a value, or the counts of a converter."""
+    """Return the words that files use for "unit", "name", "value", or for raw counts."""
     return tuple(_toml("roles")["key"][kind])
 
 
 def words_of(name: str) -> list[str]:
-    """Return the words of a name in small letters; a capital begins one.
+    """Split a name into words in lower case; a capital letter begins a new word.
 
     >>> words_of("PixelSizeX"), words_of("Step size (X)"), words_of("dx")
     (['pixel', 'size', 'x'], ['step', 'size', 'x'], ['dx'])
@@ -212,7 +216,7 @@ def words_of(name: str) -> list[str]:
 
 
 def role_of(name: str) -> Role:
-    """Tell by a column's name how its numbers came about.
+    """Return whether a column name means set, measured, derived or extreme values; else "".
 
     >>> role_of("Velocity setpoint"), role_of("ActualSpeed"), role_of("Mean COF"), role_of("Offset")
     ('set', 'measured', 'derived', '')
@@ -227,7 +231,7 @@ def role_of(name: str) -> Role:
 
 
 def without_role(name: str) -> str:
-    """Return a name without the words that say that its numbers were set or measured.
+    """Return a column name without words for "set" or "measured".
 
     >>> without_role("Actual velocity"), without_role("Set Speed"), without_role("Offset")
     ('velocity', 'Speed', 'Offset')
@@ -256,7 +260,7 @@ def _word(name: str, block: Mapping[str, Any]) -> Word:
 
 
 def _form(form: str) -> str:
-    """Return the regular expression of a form, such as `part? * other+`."""
+    """Return the regular expression of a form of settings.toml, such as `part? * other+`."""
     items = form.split()
     result = []
     for place, item in enumerate(items):
