@@ -18,7 +18,7 @@ _WORD = re.compile(
 
 
 class Rule(NamedTuple):
-    """Rule ``gives = formula`` in SI units; with `rate`, the formula is its time derivative."""
+    """Rule ``gives = formula`` in SI units; with `rate`, ``d(gives)/dt = formula``."""
 
     gives: str
     formula: str

@@ -1,4 +1,4 @@
-"""The columns of an unknown table as they are understood."""
+"""Interpretation of the columns of an unknown table."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 class Reason(Enum):
-    """Why a column is not read as it is, in words for its note."""
+    """Reason why a column is not read, in the words of its note."""
 
     TEXT = "not a number: '{}'"
     UNKNOWN_NAME = "the name is not known"
@@ -21,17 +21,16 @@ Kind = Literal["run", "scan", "table"]
 
 
 class DraftColumn(NamedTuple):
-    """One column as it is understood.
+    """Interpretation of one column of a table.
 
-    `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
-    has to say; `file_unit` what the file says. Only a column with ``used`` is read.
-    `group` is that of a TDMS channel. A converter's counts are `counted`: what one is worth is to
-    be said.
-    One of its numbers is `scale` units, and `zero` says from where its zero is read; `said` is what
-    a person called it that is no quantity: a torque, or an angle. `note` says in words why it is
-    not used; `reason` is what other rules may ask of that.
-    `options` is what it may be instead, where something is guessed; `form` that of its dates;
-    `epoch` the moment that a column of time counts from; `zero` where its zero is read.
+    The reader finds the column by `name`, or by `place` (from 1) if `name` is None. `file_unit` is
+    the unit that the file states, `unit` the one that the dialect must state. Only columns with
+    `used` are read. `counted` marks raw counts of a converter, which need a calibration factor:
+    `scale` is the number of units per count. `zero` is the interval from which the zero is read.
+    `guessed` lists guesses, `options` their alternatives, and `fill_in` what the user must state.
+    `note` says why the column is not used; `reason` is the same as a constant. `form` is the format
+    of dates, `epoch` the epoch of a clock, `group` the group of a TDMS channel, and `said` the name
+    by the user if the column is a torque or angle, which are no quantities of a run.
     """
 
     place: int
@@ -59,13 +58,13 @@ class DraftColumn(NamedTuple):
     said: Literal["", "torque", "angle"] = ""
 
     def unused(self, note: str, **more: Any) -> DraftColumn:
-        """Return the column as one that is not read, without open questions, and why."""
+        """Return the column as not used, with the reason as its note and without open questions."""
         nothing: dict[str, Any] = {"used": False, "guessed": (), "options": (), "fill_in": ""}
         return self._replace(**(nothing | {"note": note} | more))
 
     @property
     def read_unit(self) -> str | None:
-        """The unit the numbers are read in."""
+        """Unit of the numbers; times of day and dates are read as seconds."""
         return "s" if self.form else self.unit or self.file_unit
 
 
@@ -73,17 +72,15 @@ Agreed = Literal["radius", "load", "speed"]
 
 
 class Understood(NamedTuple):
-    """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written.
+    """Interpretation of a table: its columns, its kind, and the numbers (rows, columns) as written.
 
-    With `period` the column of time held intervals; its numbers are their sums by now.
-    `radius`, `load`, `speed` and `rate` (with their units) and `drive` are what a person said of a
-    track, of what presses, of how fast it slides, of the rows, and of what drives it; `strokes` the
-    length and the frequency of strokes, "" for what was not said. `agreed` are lines of the text
-    that a person took for the radius, the load or the speed, by what they are.
-    Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
-    where no column is a position, `pitch_pattern` the distance of a profile's points,
-    `length_pattern` its length, or `pitch` is what is known of the distance.
-    With `points` each row is a result at one speed.
+    With `period`, the time column of the file contains intervals, which `numbers` has as sums.
+    `radius`, `load`, `speed` and `rate` (sampling rate) with units, `drive` and `strokes` (length
+    and frequency) are answers of the user, "" if not given. `agreed` are the lines of text that the
+    user confirmed as the radius, load or speed. Without a time column, `rate_pattern` finds the
+    sampling rate above the table. Without positions, `pitch_pattern` finds the pitch of a profile
+    and `length_pattern` its length, or `pitch` is the pitch. With `points`, each row is a result at
+    one speed.
     """
 
     kind: Kind
@@ -111,7 +108,7 @@ class Understood(NamedTuple):
 
     @property
     def pitched(self) -> bool:
-        """Whether it is known how far heights without positions lie apart."""
+        """Whether the pitch of heights without positions is known."""
         return bool(self.pitch_pattern or self.length_pattern or self.pitch)
 
 
@@ -130,9 +127,9 @@ _UNITS = {
 
 
 def other_units(si_unit: str, chosen: str = "") -> tuple[str, ...]:
-    """Return units that instruments write for what is measured in an SI unit, but the chosen one.
+    """Return the usual units of a dimension, given by its SI unit, without the chosen unit.
 
-    Heights of a scan are written in smaller ones than ways: "height" is for them.
+    "height" instead of "m" gives the smaller units that are usual for heights.
 
     >>> other_units("s", "ms")
     ('s', 'min')
@@ -141,9 +138,10 @@ def other_units(si_unit: str, chosen: str = "") -> tuple[str, ...]:
 
 
 def time_unit(values: np.ndarray) -> str:
-    """Whole numbers that proceed by five and more are milliseconds, other numbers seconds.
+    """Return the likely unit of a clock: "ms" for integers in steps of five or more, else "s".
 
-    By a thousand and more, and not in tens, they are microseconds, as of Arduino's micros().
+    In steps of a thousand or more, integers that are rarely multiples of ten are "us", as from
+    Arduino's micros().
     """
     steps = np.diff(values[np.isfinite(values)])
     whole = steps.size and (values == np.round(values)).all()
@@ -153,9 +151,10 @@ def time_unit(values: np.ndarray) -> str:
 
 
 def proceeds_by_seconds(values: np.ndarray) -> bool:
-    """Whether a clock without a unit has decimals and steps by a round part of a second.
+    """Whether the steps of a clock without a unit show that it counts seconds.
 
-    A clock of milliseconds is a whole number; a second is no round part of a minute.
+    They do if they are round decimal fractions: milliseconds would be integers, and a second is no
+    round fraction of a minute.
     File: Rtec MFT, "Timestamp" 0.168, 0.268 (Dichimanaym/Tribometer-Data-Processing).
 
     >>> proceeds_by_seconds(np.array([0.168, 0.268, 0.368, 0.468]))

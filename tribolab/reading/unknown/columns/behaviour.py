@@ -1,4 +1,4 @@
-"""Quantities of unnamed columns, guessed from the behaviour of their numbers."""
+"""Quantities of unnamed columns, guessed from how their numbers change."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tribolab.reading.unknown.model import other_units, time_unit
 if TYPE_CHECKING:
     from tribolab.reading.unknown.model import DraftColumn, Kind
 
-_ROWS = 20_000  # rows looked at
+_ROWS = 20_000  # rows that are inspected
 _MIN_CORRELATION = 0.9999  # correlation of one signal in two units
-_COMPARED = 1000  # columns that are compared: the number of pairs is quadratic
-_MIN_FACTORS, _MIN_STRAIGHT = 5, 0.98  # rows, correlation of their logarithms with their number
-_EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
-_SMOOTH = 1.12
-_MAX_SCAN = 200.0  # mm, the largest traverse of a profilometer
-_HIGHEST = 5.0  # mm, the range of a stylus gauge
+_COMPARED = 1000  # columns that are compared, as each is compared with each
+_MIN_FACTORS, _MIN_STRAIGHT = 5, 0.98  # rows; correlation of the logarithm with the row number
+_EVERY = 20  # only each 20th sample of a smooth signal is needed for its path length
+_SMOOTH = 1.12  # largest ratio of the path lengths from all and from each 20th sample
+_MAX_SCAN = 200.0  # mm, longest traverse of a profilometer
+_HIGHEST = 5.0  # mm, largest range of a stylus gauge
 
 
 def by_behaviour(
@@ -27,9 +27,10 @@ def by_behaviour(
 ) -> tuple[Kind, list[DraftColumn], list[str]]:
     """Recognise a map, a profile or a run by the numbers of the columns.
 
-    Three columns whose first two fill a grid are a map. Two columns, the first even and rising, are
-    a profile: a run needs more than one signal. In other tables the first column that rises in
-    every row is time, and one that runs smoothly to and fro is the position.
+    Three columns whose first two fill a grid are a map. Two columns, the first
+    rising in even steps, are a profile: a run needs more than one signal. In other tables the
+    first column that rises in every row is time, and a column that reverses smoothly is the
+    position.
     """
     part = numbers[:_ROWS]
     width = part.shape[1]
@@ -56,7 +57,7 @@ def _is_grid(part: np.ndarray) -> bool:
 
 
 def _rises_by_factors(x: np.ndarray) -> bool:
-    """Whether numbers rise by similar factors over more than a decade, unlike a clock.
+    """Whether numbers rise by similar factors over more than a decade, as frequencies do.
 
     File: frequency, storage and loss modulus without names (RHEOS data_freq.csv).
     """
@@ -71,7 +72,7 @@ def _is_even(x: np.ndarray) -> bool:
 
 
 def _is_clock(x: np.ndarray) -> bool:
-    """Whether numbers rise by even steps, apart from restarts."""
+    """Whether numbers rise in even steps, apart from restarts."""
     if len(x) < 2 * _EVERY or not np.isfinite(x).all():
         return False
     steps = np.diff(x)
@@ -81,15 +82,15 @@ def _is_clock(x: np.ndarray) -> bool:
     if not 0 < falls <= len(x) / _EVERY or even < 0.9:
         return False
     faults = find_faults(x)
-    anew = x + faults.offsets()
-    return bool(faults.starts) and not rows_at_fault(anew, faults).any()
+    joined = x + faults.offsets()
+    return bool(faults.starts) and not rows_at_fault(joined, faults).any()
 
 
 def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
-    """Heights as large as the length, number for number, are in a smaller unit than it."""
+    """Return the likely units of positions and heights, from the ranges of their numbers."""
     heights = part[np.isfinite(part[:, height]), height]
     reach, length = np.ptp(heights) if heights.size else 0.0, np.ptp(part[:, 0])
-    if length > _MAX_SCAN:  # metres, in millimetres
+    if length > _MAX_SCAN:  # too long for millimetres
         return "um", "um" if reach < 0.1 * length else "nm"
     return "mm", "um" if reach > 0.1 * length or reach > _HIGHEST else "mm"
 
@@ -97,7 +98,7 @@ def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
 def _scan(
     columns: list[DraftColumn], part: np.ndarray, stated: tuple[str, str]
 ) -> tuple[list[DraftColumn], list[str]]:
-    """Return positions with heights behind them; of what units the text states nothing is asked."""
+    """Return columns of positions and heights; units that the text does not state are guesses."""
     names = ("x", "y", "height") if part.shape[1] == 3 else ("x", "height")
     along, across = stated if all(stated) else _scan_units(part, len(names) - 1)
     axes = []
@@ -131,8 +132,8 @@ def _run(
     result[time] = columns[time]._replace(quantity="time", unit=unit, used=True, guessed=(why,))
     result[time] = result[time]._replace(options=(*other_units("s", unit), "not used"))
     others = [i for i in range(part.shape[1]) if i != time]
-    kin = _kin(part, others)
-    smooth = [i for i in others if _runs_to_and_fro(part[:, i])]
+    kin = _same_signals(part, others)
+    smooth = [i for i in others if _reverses_smoothly(part[:, i])]
     position = max(smooth, key=lambda i: np.ptp(part[:, i]), default=None)
     for i in others:
         same = [str(k + 1) for k in kin.get(i, ())]
@@ -150,10 +151,10 @@ def _run(
     return result, []
 
 
-def _kin(part: np.ndarray, places: list[int]) -> dict[int, list[int]]:
-    """For each column those that are a straight line of it: the same signal in another unit."""
+def _same_signals(part: np.ndarray, places: list[int]) -> dict[int, list[int]]:
+    """Return, for each column, the columns with the same signal in another unit."""
     some = part[:, places[:_COMPARED]]
-    with np.errstate(invalid="ignore"):  # what is not finite does not move
+    with np.errstate(invalid="ignore"):
         moves = np.isfinite(some).all(axis=0) & (np.ptp(some, axis=0) > 0)
     moving = np.asarray(places[:_COMPARED])[moves]
     if moving.size < 2:
@@ -163,7 +164,7 @@ def _kin(part: np.ndarray, places: list[int]) -> dict[int, list[int]]:
     return {int(i): moving[row].tolist() for i, row in zip(moving, alike, strict=True)}
 
 
-def _runs_to_and_fro(x: np.ndarray) -> bool:
+def _reverses_smoothly(x: np.ndarray) -> bool:
     if len(x) < 10 * _EVERY or not np.isfinite(x).all() or np.ptp(x) == 0:
         return False
     fine = np.abs(np.diff(x)).sum()

@@ -1,4 +1,4 @@
-"""Numbers, words, dates and clocks with an epoch in the cells of an unknown table."""
+"""Numbers, words and dates in the cells of an unknown table, and the epochs of clocks."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Cells(NamedTuple):
     Attributes
     ----------
     numbers
-        Of all rows (rows, columns); NaN for what is none.
+        Numbers of all rows (rows, columns); NaN for other cells.
     text
-        For each column one of its words if most of its cells are words, else "".
+        For each column the first of its words if most of its cells are words, else "".
     missing
-        For each column its words for a missing value.
+        For each column the words that it contains in place of numbers.
     """
 
     numbers: np.ndarray
@@ -73,14 +73,14 @@ def _numbers_and_words(cells: Sequence[str], decimal: str) -> tuple[np.ndarray, 
 
 
 def _measured(numbers: np.ndarray) -> np.ndarray:
-    """Return numbers without no-data values, which the reader omits."""
+    """Replace no-data values by NaN, as the reader does."""
     numbers[np.abs(numbers) > LARGEST] = np.nan
     for values in numbers.T:
         take_marks([values])
     return numbers
 
 
-# Day before or after month: a guess unless the dates decide.
+# Whether the day precedes the month is a guess, unless the dates decide it.
 _EUROPE, _AMERICA = "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S"
 _FORMS = (
     *(ISO, ISO_ZONE),
@@ -92,14 +92,14 @@ _FORMS = (
     *("%M:%S.%f", "%M:%S,%f"),  # with a fraction only: 01:30 may be hours and minutes
 )
 _TRIED = 20
-# in a text of each of these forms: a table of 200 columns of words would take a minute to try them
+# occurs in all these formats; without this test, 200 columns of words would take a minute
 _LIKE_A_DATE = re.compile(r"\d:\d|^\s*\d{4}-?\d\d")
 
 
 def find_form(texts: Sequence[str]) -> tuple[str, str]:
-    """Find the form of the dates and times in a column.
+    """Return the format of dates and times in a column, and a second format that also fits.
 
-    Return it, and one that fits as well; "" without a second.
+    Either is "" if there is none.
 
     Examples
     --------
@@ -130,13 +130,13 @@ def _fits(texts: Sequence[str], form: str) -> bool:
 
 
 def take_dates(columns: list[DraftColumn], layout: Layout, cells: Cells) -> list[DraftColumn]:
-    """Take the first column of dates for time if no column of numbers is; its numbers change."""
+    """Take a column of dates as the time if no column of numbers is; write its times to `cells`."""
     numbers, text = cells.numbers, cells.text
     timed = [c for c in columns if c.quantity == "time" and c.used and not text[c.place - 1]]
     dates = [] if timed or not any(text) else list(_dates(columns, layout, cells))
     if not dates:
         return columns
-    # a date next to a time of day is the same for the whole day
+    # a column of dates without time of day is constant
     column, moments, form, other = next((one for one in dates if np.ptp(one[1]) > 0), dates[0])
     numbers[:, column.place - 1] = moments
     dated = column._replace(
@@ -156,7 +156,7 @@ def take_dates(columns: list[DraftColumn], layout: Layout, cells: Cells) -> list
 def _dates(
     columns: list[DraftColumn], layout: Layout, cells: Cells
 ) -> Iterator[tuple[DraftColumn, np.ndarray, str, str]]:
-    """Yield columns of dates with their times [s], their form, and another form that fits."""
+    """Yield columns of dates with their times [s], their format, and another format that fits."""
     rows = [split_row(line, layout.delimiter) for line in layout.rows()]
     for column in columns:
         index = column.place - 1
@@ -167,35 +167,35 @@ def _dates(
 
 
 _DAY = 86400.0  # [s]
-# [s] since 1970 and since 1904: from the year 2000 to that of 2050
+# the years 2000 to 2050 in seconds since 1970 and since 1904
 _SECONDS: tuple[tuple[Epoch, float, float], ...] = (
     ("unix", 946_684_800.0, 2_524_608_000.0),
     ("labview", 3_029_529_600.0, 4_607_452_800.0),
 )
-_EXCEL = (36_526.0, 54_789.0)  # [d] the same years
-_MAX_STEP = 5.0  # [s] beyond which a counter of something smaller is as likely
-_MAX_RUN = 400.0  # [d]
+_EXCEL = (36_526.0, 54_789.0)  # the same years in days
+_MAX_STEP = 5.0  # s between rows; with longer steps, a smaller unit is as likely
+_MAX_RUN = 400.0  # days of a run
 _SMALLER = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 
 
 class Counted(NamedTuple):
-    """Since which moment a clock counts, and in which unit."""
+    """Epoch from which a clock counts, and the unit in which it counts."""
 
     epoch: Epoch
     unit: str
 
 
 def counted_from(values: np.ndarray, unit: str | None, *, dated: bool = False) -> Counted | None:
-    """Return the epoch of a column of time; None if its numbers do not show it.
+    """Return the epoch and unit of a time column; None if its numbers do not show them.
 
     Parameters
     ----------
     values
         Its numbers as written (row).
     unit
-        Their unit, None if the file says none.
+        Unit of the numbers; None if the file states none.
     dated
-        Whether the column is called a date: days of a spreadsheet are believed of no other.
+        Whether the name means a date: without a unit, only such numbers may be spreadsheet days.
 
     Examples
     --------

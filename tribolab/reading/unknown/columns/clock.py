@@ -1,4 +1,4 @@
-"""Settings of the clock in a drafted dialect: restarts, rows out of order, or none in results."""
+"""Clock of a drafted dialect: restarts, rows out of order, tables of results without a clock."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ OnRepeat = Literal["", "drop", "interpolate"]
 
 
 def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
-    """Sum a time column that contains intervals by name and numbers; return whether it does."""
+    """Replace a time column of intervals by their running sum; return whether there is one."""
     column = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)
     if column is None or normalise_label(split_name(column.label)[0]) not in plain_words(
         "interval"
@@ -42,7 +42,7 @@ def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
 
 
 def in_seconds(columns: list[DraftColumn], numbers: np.ndarray) -> list[DraftColumn]:
-    """Read a clock without a unit in seconds if its steps are, and no speed depends on it."""
+    """Take a clock without a unit as seconds if its steps suggest it and no speed depends on it."""
     moved = any(c.used and c.quantity == "position" for c in columns)
     if moved or angle_of(columns) is not None or turns_of(columns, numbers) is not None:
         return columns
@@ -57,10 +57,9 @@ def in_seconds(columns: list[DraftColumn], numbers: np.ndarray) -> list[DraftCol
 def find_clock(
     layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
 ) -> tuple[OnRepeat, bool, list[DraftColumn]]:
-    """Find the settings with which time increases: for single rows, and for restarts.
+    """Return the settings `on_repeat` and `restart` with which time increases, and the columns.
 
-    Rows are left out only where nothing is lost with them: the row before says the same, or they
-    are empty.
+    Rows are left out only if they repeat the row before or are empty.
     """
     column = next((c for c in columns if c.used and c.quantity == "time"), None)
     if column is None:
@@ -69,7 +68,7 @@ def find_clock(
     if len(layout.blocks) == 1 and is_newest_first(time):
         return "", False, _replaced(columns, _reversed(column))
     edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
-    edges = np.unique(np.minimum(edges, len(time)))  # damaged rows are not among the numbers
+    edges = np.unique(np.minimum(edges, len(time)))  # `numbers` has no damaged rows
     restart = any(not time[b] > time[b - 1] for b in edges[1:-1])
     bad, wraps = np.zeros(len(time), dtype=bool), []
     for first, last in itertools.pairwise(edges):
@@ -84,7 +83,7 @@ def find_clock(
         lossless = _loses_nothing(np.delete(numbers, column.place - 1, axis=1), numbers, bad)
         on_repeat = "drop" if lossless else "interpolate"
         column = _with_repeats(column, time, bad, lossless=lossless)
-    if wraps:  # no guess: it falls by exactly the range of such a counter
+    if wraps:  # certain: time falls by exactly the range of such a counter
         note = "; ".join(f"its counter wraps every {p:.9g} s" for p in dict.fromkeys(wraps))
         column = column._replace(note=f"{column.note}; {note}" if column.note else note)
     return on_repeat, restart, _replaced(columns, column)
@@ -95,7 +94,7 @@ def _replaced(columns: list[DraftColumn], column: DraftColumn) -> list[DraftColu
 
 
 def _reversed(column: DraftColumn) -> DraftColumn:
-    """Return a clock whose newest row comes first; one that may count down is a guess."""
+    """Return a clock with the note that the newest row is first; a guess if it may count down."""
     note = "the newest row comes first, and the rows are turned round"
     if part_pattern("time_left").search(normalise_label(split_name(column.label)[0])):
         return column._replace(note="", guessed=(note,))
@@ -103,7 +102,7 @@ def _reversed(column: DraftColumn) -> DraftColumn:
 
 
 def _loses_nothing(others: np.ndarray, numbers: np.ndarray, bad: np.ndarray) -> bool:
-    """Whether rows at fault repeat the row before, or are empty but for their time."""
+    """Whether all faulty rows repeat the row before them, or are empty except for the time."""
     twin = np.zeros(len(numbers), dtype=bool)
     twin[1:] = ((numbers[1:] == numbers[:-1]) | np.isnan(numbers[1:])).all(axis=1)
     return bool((twin | np.isnan(others).all(axis=1))[bad].all())
@@ -112,7 +111,7 @@ def _loses_nothing(others: np.ndarray, numbers: np.ndarray, bad: np.ndarray) -> 
 def _with_repeats(
     column: DraftColumn, time: np.ndarray, bad: np.ndarray, *, lossless: bool
 ) -> DraftColumn:
-    """Describe the treatment of rows whose time does not increase; a guess unless one time fits."""
+    """Return the clock with a note or guess on how rows whose time does not increase are read."""
     rows = f"{int(bad.sum())} rows whose time is not later than before"
     if lossless:
         return column._replace(note=f"{rows} are left out: they add nothing")
@@ -123,7 +122,7 @@ def _with_repeats(
 
 
 def _fill_one_interval(time: np.ndarray, bad: np.ndarray) -> bool:
-    """Whether each row at fault is one of many, and the rows around it leave room for just it."""
+    """Whether faulty rows are rare, and each fills a gap of one sample between its neighbours."""
     rows = np.flatnonzero(bad)
     inside = rows[(rows > 0) & (rows < time.size - 1)]
     if inside.size < rows.size or rows.size > _FEW_AT_FAULT * time.size:
@@ -134,12 +133,12 @@ def _fill_one_interval(time: np.ndarray, bad: np.ndarray) -> bool:
 
 _MAX_ROWS = 400  # rows
 _MIN_ROWS = 3
-_RISE = 1.02  # from speed to speed
-_SWEEP = 8  # rows of a sweep up or down, at least, where there are several
+_RISE = 1.02  # least ratio of speeds in successive rows
+_SWEEP = 8  # least rows of a sweep up or down
 
 
 def are_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
-    """Whether every row is of another speed than its neighbours, in sweeps up and down."""
+    """Whether each row is a result at one speed: the speeds sweep up and down."""
     held = {column.quantity: column for column in columns if column.used}
     speeds = ("sliding_velocity", "rotation_speed", "rolling_speed")
     column = next((held[name] for name in speeds if name in held), None)
@@ -153,5 +152,5 @@ def are_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
     way = np.sign(steps)
     turns = np.flatnonzero(way[1:] != way[:-1])
     # the last speed of one sweep may be the first of the next
-    held_on = np.abs(steps) < np.log(_RISE)
-    return bool(turns.size <= size.size / _SWEEP) and int(held_on.sum()) <= turns.size / 2
+    repeated = np.abs(steps) < np.log(_RISE)
+    return bool(turns.size <= size.size / _SWEEP) and int(repeated.sum()) <= turns.size / 2

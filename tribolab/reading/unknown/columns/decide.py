@@ -1,4 +1,4 @@
-"""One decision for all columns: the assignment of quantities that the evidence favours most."""
+"""Assignment of quantities to all columns at once, such that the evidence is largest in total."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ SIGNALS = {
     "film_thickness",
 }
 _TORQUE = "a torque: with the radius at which it acts it is a force"
-_NOTHING = -20.0  # log odds of a column without a quantity: names propose, other evidence rules out
+_NOTHING = -20.0  # log odds of a column that gets no quantity
 _NOT_PROPOSED = -1000.0
 
 
 def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
-    """Give each quantity to at most one column, as the evidence of all rules favours.
+    """Assign each quantity to at most one column, such that the evidence is largest in total.
 
-    Return the columns with their quantities, what of them is a guess, and why others have none.
+    Return the columns with quantities and guesses; columns without a quantity have the reason.
     """
     evidence = [one for rule in rules for one in rule(facts)]
     names = sorted({one.quantity for one in evidence if one.proposes})
@@ -54,7 +54,7 @@ def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
 
 
 class _Assignment(NamedTuple):
-    """Quantity of each column, by its position in `names`; evidence by column."""
+    """Chosen quantity of each column, as an index of `names`, and the evidence by column."""
 
     facts: Facts
     by_place: Mapping[int, Sequence[Evidence]]
@@ -67,7 +67,7 @@ class _Assignment(NamedTuple):
         return self.by_place.get(place, ())
 
     def option(self, place: int, name: str) -> Match:
-        """Return how well a column's name suits a quantity, and the unit it is read in."""
+        """Return the match of a column's name with a quantity; certain if other evidence is."""
         said = [option for option in self.facts.options[place] if option.quantity == name]
         option = said[0] if said else Match(name, UNSURE, None)
         if any(one.sure and one.quantity == name for one in self.about(place)):
@@ -77,7 +77,7 @@ class _Assignment(NamedTuple):
         return option
 
     def other_force_is_taken(self, place: int, name: str) -> bool:
-        """Whether a column may be either force while another is certainly one of them."""
+        """Whether a column that may be either force is clear, as another is the other force."""
         other = BOTH_FORCES[name == BOTH_FORCES[0]]
         if not self.facts.is_either_force(place) or other not in self.names:
             return False
@@ -85,7 +85,7 @@ class _Assignment(NamedTuple):
         return k in self.chosen and self.facts.is_named(self.chosen.index(k), other)
 
     def rivals(self, place: int) -> list[int]:
-        """Return other columns without a quantity that suit this one's about as well."""
+        """Return columns without a quantity that suit this column's quantity about as well."""
         k = self.chosen[place]
         if k is None:
             return []
@@ -102,14 +102,14 @@ class _Assignment(NamedTuple):
         ]
 
     def has_spares(self, place: int) -> bool:
-        """Whether of several columns for a force this one is filled; in another file not."""
+        """Whether a force has several columns, but only this one has values in this file."""
         k, rivals = self.chosen[place], self.rivals(place)
         filled = [np.any(np.isfinite(x) & (x != 0)) for x in self.facts.numbers[:, rivals].T]
         return k is not None and self.names[k] in FORCES and bool(rivals) and not any(filled)
 
 
 def _scores(facts: Facts, evidence: Sequence[Evidence], names: Sequence[str]) -> np.ndarray:
-    """Return the sum of evidence for each column (rows) and quantity (columns)."""
+    """Return the total weight of evidence for each column (rows) and quantity (columns)."""
     score = np.full((len(facts.columns), len(names)), _NOT_PROPOSED)
     for one in evidence:
         if one.proposes:
@@ -123,14 +123,14 @@ def _scores(facts: Facts, evidence: Sequence[Evidence], names: Sequence[str]) ->
 
 
 def _assign(score: np.ndarray) -> list[int | None]:
-    """Return the quantity of each column, by its place in the scores; None for none."""
+    """Return, for each column, the index of its quantity in the scores, or None."""
     chosen: list[int | None] = [None] * len(score)
     if not score.size:
         return chosen
     rows = np.flatnonzero(score.max(axis=1) > _NOTHING)
     best = score[rows].argmax(axis=1)
     if np.unique(best).size < best.size:
-        # late: takes longer to load than a known file to read
+        # imported late: takes longer to load than a known file takes to read
         from scipy.optimize import linear_sum_assignment
 
         found, best = linear_sum_assignment(-np.maximum(score[rows], _NOTHING))
@@ -141,7 +141,7 @@ def _assign(score: np.ndarray) -> list[int | None]:
 
 
 def _described(decided: _Assignment, place: int) -> DraftColumn:
-    """Return a column with its quantity and what of it is a guess."""
+    """Return a column with its quantity, and the guesses that the user has to confirm."""
     k, facts, column = decided.chosen[place], decided.facts, decided.facts.columns[place]
     if k is None:
         return _unused(decided, place)
@@ -177,7 +177,7 @@ def _filled(decided: _Assignment, place: int, name: str, *, several: bool = Fals
 
 
 def _unused(decided: _Assignment, place: int) -> DraftColumn:
-    """Return a column without a quantity, with the reason."""
+    """Return a column without a quantity, with the reason as its note."""
     facts, names, score = decided.facts, decided.names, decided.score
     column = facts.columns[place]
     if not column.label:

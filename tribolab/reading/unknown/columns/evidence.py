@@ -1,7 +1,7 @@
-"""Evidence for the quantity of a column: its name, its numbers, the text, the other columns.
+"""Evidence for the quantity of a column from its name, its numbers and the other columns.
 
-Each rule is a generator of `Evidence`. Weights are logarithms of odds and add up; their order does
-not matter.
+Each rule is a generator of `Evidence`. Weights are logarithms of odds and are added, so that the
+order of rules does not matter.
 """
 
 from __future__ import annotations
@@ -26,11 +26,10 @@ from tribolab.reading.unknown.model import DraftColumn, Kind
 from tribolab.units.quantities import QUANTITIES, quantity, unit_conversion
 
 RULED_OUT = -100.0
-NEAR = 0.05  # names whose scores differ by less suit a quantity about as well
-BOTH_FORCES = ("friction_force", "normal_force")  # what a load cell may measure
+NEAR = 0.05  # two names whose scores differ by less suit a quantity about equally well
+BOTH_FORCES = ("friction_force", "normal_force")  # either may be measured by a load cell
 FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
-# log odds by the role of a column: of two for a quantity the measured one counts, and what was set
-# or worked out gives way
+# log odds by the role of a column: measured columns are preferred to set and derived ones
 _ROLE: dict[Role, float] = {
     "": 0.0,
     "measured": math.log(1.1),
@@ -38,20 +37,22 @@ _ROLE: dict[Role, float] = {
     "set": math.log(0.5),
     "extreme": math.log(0.4),
 }
-_CONSTANT = math.log(0.9)  # a load that never moves is the one that was set
-_PREFERRED = 0.03  # log odds by size, for a name that may mean two quantities
-_CROSSTALK = 5.0  # times: the force along the motion is so much larger than one across it
-_ACROSS = {"fy"}  # names of a force across the motion
-_RADIAL = {"fr", "frad"}  # friction; but next to a torque the force that presses on the shaft
-UNSURE = 0.5  # score of a name that is asked about
+_CONSTANT = math.log(0.9)  # log odds of a constant force, which is probably a set-point
+_PREFERRED = 0.03  # log odds by magnitude, for a name that may mean two quantities
+_CROSSTALK = 5.0  # least ratio of the force along the motion to a force across it
+_ACROSS = {"fy"}  # names of the force across the motion
+_RADIAL = {"fr", "frad"}  # friction force; in a file with a torque, the load on the shaft
+UNSURE = 0.5  # score of a name whose meaning the user has to confirm
 _DECIDING = FORCES | {"sliding_velocity", "rotation_speed"}
 _DIFFERENT = 0.01  # relative difference of two columns that are not copies
 
 
 class Evidence(NamedTuple):
-    """Score of one piece of evidence for the quantity of a column (from 0); "" for any quantity.
+    """Evidence for (or, with a negative weight, against) a quantity of the column `place` (from 0).
 
-    A negative weight speaks against it. With `sure` nobody is asked, with `doubt` a person is.
+    With the quantity "", the weight applies to all quantities. Only quantities that some evidence
+    `proposes` are possible. With `sure` the user need not confirm the quantity, with `doubt` he has
+    to.
     """
 
     place: int
@@ -64,7 +65,7 @@ class Evidence(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """What is known before columns are decided.
+    """What is known about a table before its columns are assigned to quantities.
 
     Attributes
     ----------
@@ -73,9 +74,9 @@ class Facts(NamedTuple):
     options
         For each column the possible quantities of its name, the most likely first.
     numbers
-        Their numbers (rows, columns) as written.
+        Numbers of the columns (rows, columns) as written.
     kind
-        What the file is.
+        Whether the file is a run, a scan or another table.
     """
 
     columns: Sequence[DraftColumn]
@@ -85,27 +86,27 @@ class Facts(NamedTuple):
     kind: Kind
 
     def candidates(self, place: int) -> list[Match]:
-        """Return the quantities that a name suits about as well as the first."""
+        """Return the quantities of a column's name that score about as high as the best."""
         options = self.options[place]
         return [o for o in options if o.score >= options[0].score - NEAR]
 
     def places(self, name: str) -> list[int]:
-        """Return the columns whose most likely quantity by name is this one."""
+        """Return the indices of the columns whose names most likely mean a quantity."""
         return [p for p, o in enumerate(self.options) if o and o[0].quantity == name]
 
     def is_named(self, place: int, name: str = "") -> bool:
-        """Whether a name is surely one of a quantity, or of any."""
+        """Whether a column's name certainly means the given quantity, or any if none is given."""
         options = self.options[place]
         return (
             bool(options) and options[0].score >= KNOWN_WORD and name in ("", options[0].quantity)
         )
 
     def any_named(self, name: str) -> bool:
-        """Whether some column is surely named for a quantity."""
+        """Whether any column's name certainly means the given quantity."""
         return any(self.is_named(place, name) for place in range(len(self.options)))
 
     def is_either_force(self, place: int) -> bool:
-        """Whether a name leaves open which of both forces a column contains."""
+        """Whether a column's name may mean both the friction force and the normal force."""
         near = {option.quantity for option in self.candidates(place)}
         return not self.is_named(place) and set(BOTH_FORCES) <= near
 
@@ -114,7 +115,7 @@ Rule = Callable[[Facts], Iterator[Evidence]]
 
 
 def name_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Propose quantities for a name; a symbol or a whole term weighs more than part of a term."""
+    """Propose the quantities that a column's name may mean; complete terms weigh most."""
     for place, options in enumerate(facts.options):
         for rank, option in enumerate(facts.candidates(place) if options else ()):
             weight = math.log(option.score) - 1e-3 * rank
@@ -122,7 +123,7 @@ def name_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def role_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Favour what was measured over what was set or worked out.
+    """Favour measured columns over set and derived ones.
 
     File: a Bruker UMT log with "Set Force" next to "Fz" (okilitive/CETR-tribometer).
     """
@@ -132,14 +133,14 @@ def role_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def repeated_name_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Favour the later of two columns of one name: exporters repeat first what was plotted."""
+    """Favour the later of two columns with one name: some exporters put plotted columns first."""
     filled = (np.isfinite(facts.numbers) & (facts.numbers != 0)).any(axis=0)
     for place in range(len(facts.columns)):
         yield Evidence(place, "", 1e-4 * filled[place] + 1e-6 * place / len(facts.columns))
 
 
 def number_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Weigh sizes and steps if a name may mean two quantities."""
+    """Judge by magnitude and steps if a column's name may mean several quantities."""
     has_units = any(unit is not None for _, unit, _ in facts.bare)
     for place, options in enumerate(facts.options):
         values = facts.numbers[:, place]
@@ -159,7 +160,7 @@ def number_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def advance_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a time or way of a scan that never changes if another one rises in every row.
+    """Rule out a constant time, or position of a scan, if another such column always rises.
 
     Files: a Phoenix TE 67, "Step Time" next to "Test Time" (kyembot/pin-on-disk-data-analysis); a
     pen profilometer, two encoders (jonathan-bender/scaling-octo-telegram).
@@ -172,7 +173,7 @@ def advance_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def size_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Favour the larger of two forces: a sensor across the motion shows only cross-talk.
+    """Favour the larger of two forces: a sensor across the motion measures only cross-talk.
 
     File: six axes of a load cell, Fx 2.3 N along and Fy 0.3 N across (liampond/EgbertsTribometer).
     """
@@ -186,7 +187,7 @@ def size_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def rectified_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Favour the force with a direction over its magnitude: Bruker UMT writes Fx and Ff."""
+    """Favour a force with a sign over its magnitude: Bruker UMT writes both Fx and Ff."""
     places = [p for p in facts.places("friction_force") if facts.is_named(p)]
     for place in places:
         signed = facts.numbers[:, place]
@@ -199,7 +200,7 @@ def rectified_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def row_count_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a column "n" that increases by one: it is the number of the row."""
+    """Rule out a column "n" that increases by one in each row: it is a row counter."""
     for place, (name, unit, _) in enumerate(facts.bare):
         if normalise_label(name) != "n" or unit is not None:
             continue
@@ -209,7 +210,7 @@ def row_count_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def torque_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Take a torque for the friction, and no force across the motion nor an extreme next to it."""
+    """If a torque is recorded, take it as the friction rather than forces with unclear names."""
     torque = torque_of(facts.columns) is not None
     if torque and not any(facts.places(name) for name in (*FRICTION, "normal_force")):
         forces = [p for p, (_, unit, _) in enumerate(facts.bare) if unit and converts(unit, "N")]
@@ -234,7 +235,7 @@ def torque_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def typical_size(facts: Facts, place: int) -> float:
-    """Return the median magnitude of a column, in SI units of its quantity by name."""
+    """Return the median magnitude of a column's nonzero numbers in SI units."""
     option, unit = facts.options[place][0], facts.bare[place][1]
     unit = None if unit is not None and is_count(unit) else unit
     known = quantity(option.quantity)
@@ -245,7 +246,7 @@ def typical_size(facts: Facts, place: int) -> float:
 
 
 def is_contested(facts: Facts, place: int, best: int, name: str) -> bool:
-    """Whether a column's name suits a quantity as well as the best one, but its numbers differ."""
+    """Whether a column suits a quantity by name as well as the best column, but differs from it."""
     if name not in _DECIDING or role_of(facts.bare[best][0]) == "measured":
         return False
     if role_of(facts.bare[place][0]) or not facts.is_named(place, name):

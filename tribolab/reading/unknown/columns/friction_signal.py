@@ -1,4 +1,4 @@
-"""Agreement of friction with a recorded coefficient and with the direction of the motion."""
+"""Consistency of the friction force with the recorded coefficient and the direction of motion."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.quantities import unit_conversion
 
 _RATIO = ("friction_coefficient", "friction_force", "normal_force")
-_APART = 1.5  # times: filters and zeros that the instrument took off make less
+_APART = 1.5  # ratio of two coefficients; filters and a zero by the instrument make less
 _MIN_LOADED_ROWS = 20  # rows under load that are needed
-_LOADED = 0.5  # of the largest load
-_OVER_N = re.compile(r"\w{1,3}\s*/\s*N")  # a symbol and its unit, or divided by the normal force
+_LOADED = 0.5  # of the largest load; above it, the contact is loaded
+_OVER_N = re.compile(r"\w{1,3}\s*/\s*N")  # "Ff/N": in newtons, or divided by the normal force N
 
 
 def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
-    """Note if the recorded coefficient differs from the ratio of the forces, or cannot be one.
+    """Return a guess if the recorded coefficient or forces are implausible or inconsistent.
 
-    Return one guess, or none.
+    The list has one guess or none.
     """
     held = {column.quantity: column for column in columns if column.used and column.quantity}
     ratio, *forces = (held.get(name) for name in _RATIO)
@@ -53,8 +53,8 @@ def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
 
 
 def force_or_ratio(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Make a guess of 'Ff/N' where no other name has its unit behind a stroke, as 't/s' would."""
-    if any(_has_unit_behind_stroke(column.label) for column in columns):
+    """Mark 'Ff/N' as a guess, unless another name also has its unit after a slash, as 't/s'."""
+    if any(_has_unit_after_slash(column.label) for column in columns):
         return list(columns)
     return [
         column._replace(
@@ -69,7 +69,7 @@ def force_or_ratio(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     ]
 
 
-def _has_unit_behind_stroke(label: str) -> bool:
+def _has_unit_after_slash(label: str) -> bool:
     name, unit = split_unit(label.strip())
     behind = label.strip()[len(name) :].lstrip().startswith("/")
     return unit is not None and behind and not _OVER_N.fullmatch(label.strip())
@@ -80,24 +80,24 @@ def _si(column: DraftColumn, numbers: np.ndarray) -> np.ndarray:
     return np.asarray(column.sign * scale * numbers[:, column.place - 1] + offset)
 
 
-_MOVES, _RESTS = 0.05, 0.005  # of the highest speed
-_FREE = 0.1  # of the highest load, below which nothing presses
+_MOVES, _RESTS = 0.05, 0.005  # of the highest speed: above, it slides; below, it rests
+_FREE = 0.1  # of the highest load; below it, the contact is open
 _MIN_ROWS = 20  # rows
-_NEARLY_ALL = 0.95  # of the rows that move
-_ALIKE = 0.05  # of 1: a recorded coefficient over the ratio of the forces
-_CLEAR = 3.0  # times the scatter
+_NEARLY_ALL = 0.95  # of the rows with sliding
+_ALIKE = 0.05  # relative difference of two equal coefficients of friction
+_CLEAR = 3.0  # signal over scatter
 _SPEEDS = ("sliding_velocity", "rotation_speed")
-_PARTS = 2000  # stretches over which a position tells a speed: from row to row it is noise
-_JUMP = 0.25  # of its range, from which a position is set back between two of them
+_PARTS = 2000  # intervals for a speed from a position: from row to row it would be noise
+_JUMP = 0.25  # of the range of a position; a larger step between two intervals is a reset
 COUNTED_SO = "it is counted against the motion: no friction drives what slides"
 
 
 def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[DraftColumn]:
-    """Turn a friction force that points along the motion wherever it slides.
+    """Reverse the sign of a friction force that is negative whenever the sliding speed is positive.
 
-    It has to be so with what the signal shows at rest, or where nothing presses, taken off and with
-    it, as an offset of the sensor has any sign. Of a record without rests nothing is known: what
-    creeps at a low speed rests by no means, and may have more friction than what goes fast.
+    This must be true both with and without the reading at rest (or without load) subtracted,
+    because a sensor offset may have any sign. Without rests nothing is changed: slow sliding is
+    no rest, and its friction may exceed that of fast sliding.
     """
     force = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
     if len(force) != 1 or force[0].sign != 1:
@@ -118,7 +118,7 @@ def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[
     if min(np.count_nonzero(rests), np.count_nonzero(moves)) < _MIN_ROWS:
         return list(columns)
     if not by_load and abs(np.median(velocity[rests])) > _CLEAR * _scatter(velocity[rests]):
-        return list(columns)  # it slides, only slowly
+        return list(columns)  # it slides slowly instead of resting
     way, zero = np.sign(velocity[moves]), float(np.median(signal[rests]))
     shown, along = way * signal[moves], way * (signal[moves] - zero)
     against = min((shown < 0).mean(), (along < 0).mean()) > _NEARLY_ALL
@@ -135,9 +135,9 @@ def _turned(columns: Sequence[DraftColumn], force: DraftColumn) -> list[DraftCol
 def _is_negative_by_coefficient(
     columns: Sequence[DraftColumn], numbers: np.ndarray, force: DraftColumn, load: DraftColumn
 ) -> bool:
-    """Whether friction is negative where its recorded ratio to the load is positive.
+    """Whether the friction is negative along the motion, but the recorded coefficient positive.
 
-    The instrument's coefficient says what its friction is, whatever the offset of the sensor.
+    The recorded coefficient shows the true sign, whatever the offset of the sensor.
     File: Rtec MFT, "DAQ.COF ()" 0.12, "DAQ.Fx (N)" -2.4, "DAQ.Fz (N)" -20; its program plots -Fx.
     """
     own = [c for c in columns if c.used and c.quantity == "friction_coefficient"]
@@ -158,7 +158,7 @@ def _is_negative_by_coefficient(
 def _moving(
     columns: Sequence[DraftColumn], numbers: np.ndarray, signals: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the speed, in any unit, and the other signals; nothing without a speed."""
+    """Return the signed speed (any unit) and the signals at its rows; empty without a speed."""
     held = {c.quantity: c for c in columns if c.used}
     speed = next((held[name] for name in _SPEEDS if name in held), None)
     if speed is not None:

@@ -17,7 +17,7 @@ _PURE = ("1", "-", ".")  # signs for the unit of a pure number
 
 
 def labelled(layout: Layout) -> list[DraftColumn]:
-    """Columns with their names and units from the header."""
+    """Return the columns of a table with their names and units from the header."""
     heading = layout.heading
     cells = list(heading.cells if heading else ())[: layout.width]
     cells += [""] * (layout.width - len(cells))
@@ -47,33 +47,36 @@ def labelled(layout: Layout) -> list[DraftColumn]:
 
 
 def _of_cell(cell: str) -> tuple[str, str | None, str]:
-    """Return name and unit of a cell such as "POSITION (MM)", and the unit as it has to be read."""
+    """Return name and unit of a header cell, and the unit as the dialect must state it.
+
+    The last is "" if the reader understands the unit: it is "mm" for "POSITION (MM)".
+    """
     name, unit = split_name(cell)
     spelt = ""
     if unit == "A" and matches(name, unit, scan=True):
-        unit = spelt = "angstrom"  # of heights, as profilometers write it
+        unit = spelt = "angstrom"  # profilometers write A for angstrom
     spelt = spelt or _in_small_letters(unit)
     unit = spelt or unit
     if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):
-        return name, None, spelt  # brackets around something else
+        return name, None, spelt  # the brackets contain something else
     return name, unit, spelt
 
 
 def _of_rows(name: str, unit_cell: str) -> tuple[str, str | None, str]:
-    """Return name and unit if a row of its own states units, and how the unit has to be read."""
+    """Return the same as `_of_cell` for a header with units in a row of their own."""
     unit = unit_cell.strip("[]() ") or None
     spelt = _in_small_letters(unit)
     return name, None if unit in _PURE else spelt or unit, spelt
 
 
 def _in_small_letters(unit: str | None) -> str:
-    """Return a unit of capitals as it is usually written: MM as mm; "" if it needs no change."""
+    """Return a unit in capitals in lower case: MM as mm; "" if the unit is correct as written."""
     capitals = unit is not None and unit.isupper() and not is_unit(unit)
     return unit.lower() if unit and capitals and is_unit(unit.lower()) else ""
 
 
 def bare_name(column: DraftColumn) -> Bare:
-    """Name without its unit, the unit, and whether the dialect must state it."""
+    """Return the name of a column without unit, its unit, and whether a dialect must state it."""
     name = split_name(column.label)[0] if column.name is None else column.name
     if column.unit is not None:
         return name, column.unit, True
@@ -88,7 +91,7 @@ def bare_name(column: DraftColumn) -> Bare:
 
 
 def in_stated_unit(columns: list[DraftColumn], unit: str, along: str = "") -> list[DraftColumn]:
-    """Give heights and positions without a unit those that the text before the table states."""
+    """Give heights and positions without a unit the units stated above the table."""
     return [_in_unit(column, unit, along, alone=len(columns) == 1) for column in columns]
 
 
@@ -106,7 +109,7 @@ def _in_unit(column: DraftColumn, unit: str, along: str, *, alone: bool) -> Draf
 
 
 def side_by_side(columns: list[DraftColumn]) -> bool:
-    """Whether columns are profiles side by side: their names differ by a number alone."""
+    """Whether columns are profiles side by side: their names differ only by a number."""
     names = [bare_name(column)[0] for column in columns]
     units = {column.file_unit or column.unit for column in columns}
     alike = {re.sub(r"\d+", "", name).strip() for name in names}
@@ -115,7 +118,7 @@ def side_by_side(columns: list[DraftColumn]) -> bool:
 
 
 def are_traces(columns: list[DraftColumn]) -> bool:
-    """Whether columns in units of length are named as numbered traces: "Profile 1 [um]"."""
+    """Whether all columns are lengths with names of numbered traces: "Profile 1 [um]"."""
     bare = [bare_name(column) for column in columns]
     named = (_trace_name(name) for name, _, _ in bare)
     return all(named) and all(unit is not None and converts(unit, "m") for _, unit, _ in bare)
@@ -127,7 +130,7 @@ def _trace_name(name: str) -> bool:
 
 
 def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftColumn:
-    """Take a column without a known name for heights: what a pitch before it is of."""
+    """Return a column as heights whose pitch is stated above the table."""
     name, own, say = bare_name(column)
     if say and own is not None and column.file_unit is None:
         column = column._replace(unit=own)  # "Hauteurs en µm"

@@ -20,14 +20,14 @@ from tribolab.units.quantities import unit_conversion
 _MOTION = {"rotation_speed", "sliding_velocity", "position"}
 _MIN_ROWS_FOR_ROTATION = 20
 _EXPLAINED_BY_ROTATION = 0.98  # share of a displacement's variance
-_SMALLEST_TURN = 2 * math.pi * 0.5e-3  # m, on the smallest track (physics.toml)
-_MOVING = 0.2  # of the fastest: slower, friction is turning
-_MIN_TURNS = 2  # one might be chance
+_SMALLEST_TURN = 2 * math.pi * 0.5e-3  # m slid per turn on the smallest track (physics.toml)
+_MOVING = 0.2  # of the highest speed; below it, the friction may be reversing
+_MIN_TURNS = 2  # reversals; a single one might be chance
 _AGREES = 0.9  # mean product of the signs: 95 % of the rows agree
 
 
 def direction_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Take a length for the position if friction turns whenever its rate does.
+    """Take a length as the position if friction reverses whenever the length does.
 
     Friction opposes sliding. File: Bruker UMT, "Y" next to "Fx" (okilitive/CETR-tribometer).
     """
@@ -47,7 +47,7 @@ def direction_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def distance_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a length that only grows next to a position that reverses: it is the distance."""
+    """Rule out a length that only grows if another position reverses: it is the distance slid."""
     steps = {
         place: np.diff(facts.numbers[np.isfinite(facts.numbers[:, place]), place])
         for place in facts.places("position")
@@ -59,7 +59,7 @@ def distance_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def motion_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Take a displacement sensor for one across the motion if another column gives the motion."""
+    """Take a displacement as perpendicular to the motion if another column gives the motion."""
     if not any(facts.any_named(name) for name in _MOTION):
         return
     for place, options in enumerate(facts.options):
@@ -98,7 +98,7 @@ def stage_axis_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def rotation_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a length that does not increase with the rotation speed in another column."""
+    """Rule out a length as the position if it does not grow with the recorded rotation."""
     turning, ways = facts.places("rotation_speed"), facts.places("position")
     turning = [place for place in turning if facts.bare[place][1] is not None]
     ways = [place for place in ways if not is_axis(facts.bare[place][0])]
@@ -109,7 +109,7 @@ def rotation_evidence(facts: Facts) -> Iterator[Evidence]:
     rate, way = rate[known], way[known]
     if known.sum() < _MIN_ROWS_FOR_ROTATION or not rate.any():
         return
-    if _way_per_turn(facts, turning[0], ways[0]) < _SMALLEST_TURN:
+    if _length_per_turn(facts, turning[0], ways[0]) < _SMALLEST_TURN:
         yield Evidence(ways[0], "position", RULED_OUT, "the rotation slides much farther")
     elif _explained(way, np.cumsum(rate)) > _EXPLAINED_BY_ROTATION:
         yield Evidence(ways[0], "position", 0.0, sure=True)
@@ -121,8 +121,8 @@ def rotation_evidence(facts: Facts) -> Iterator[Evidence]:
         yield Evidence(ways[0], "", RULED_OUT, why)
 
 
-def _way_per_turn(facts: Facts, turning: int, way: int) -> float:
-    """Return the length [m] that a column grows by in a turn; infinity without a clock.
+def _length_per_turn(facts: Facts, turning: int, way: int) -> float:
+    """Return how much a length column changes per turn [m]; infinity if time is not recorded.
 
     File: a T-11 pin-on-disc tester, whose "Displacement [um]" is the wear.
     """
@@ -137,7 +137,10 @@ def _way_per_turn(facts: Facts, turning: int, way: int) -> float:
 
 
 def _explained(way: np.ndarray, turns: np.ndarray) -> float:
-    """Return the share of a displacement's variance that rotation explains, apart from restarts."""
+    """Return the share of a length's variance that the number of turns explains.
+
+    Jumps, as from a restarted counter, are ignored.
+    """
     if not np.ptp(turns) > 0 or not np.ptp(way) > 0:
         return 0.0
     steps, by_turns = np.diff(way), np.diff(turns)

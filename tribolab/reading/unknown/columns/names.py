@@ -1,4 +1,4 @@
-"""Type of a table by the names of its columns: a run, a profile, or neither."""
+"""Kind of a table (run, scan or neither) and quantities of its columns, from the column names."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from tribolab.reading.unknown.columns.unit_and_sign import Bare
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Kind
 
-# "Distance (m), COF, Wear depth (um)" is a run, although wear is a height
+# quantities of a run: "Distance (m), COF, Wear depth (um)" is no profile, although wear is a height
 _OF_RUN = {"time", "friction_force", "friction_coefficient", "normal_force", "sliding_velocity"}
-_RISES = 0.9  # share of the steps from row to row; a clock may start again
+_RISES = 0.9  # least share of rising steps of a clock, which may restart
 _FIRST_WORD = re.compile(r"[\W_]+")
 _TAG_AHEAD = re.compile(r"[^\W_]+[_.:]")
-_MAX_OPEN = 20  # columns of unknown name and known unit that are compared
-_BY_UNIT = 0.6  # score of an unknown name with a known unit
+_MAX_OPEN = 20  # columns with unknown names and known units that are compared
+_BY_UNIT = 0.6  # score of an unknown name whose unit shows the quantity
 
 
 def has_meaning(columns: list[DraftColumn]) -> bool:
-    """Whether the header has more information than 'Channel 1, Channel 2'."""
+    """Whether any name or unit in the header is known, unlike 'Channel 1, Channel 2'."""
     bare = [bare_name(column)[:2] for column in columns if column.label]
     return any(unit is not None or matches(name, unit) for name, unit in bare)
 
@@ -49,7 +49,7 @@ def decide_by_name(
     *,
     placed: bool = False,
 ) -> tuple[Kind, list[DraftColumn]]:
-    """Decide the columns of a table by their names, and with them what kind of file it is."""
+    """Return the kind of a table, and its columns with the quantities that their names mean."""
     general = (*RULES, *MOTION_RULES)
     bare = _without_tag([bare_name(column) for column in columns])
     run = [matches(name, unit) for name, unit, _ in bare]
@@ -70,7 +70,7 @@ def decide_by_name(
 
 
 def _without_tag(bare: list[Bare]) -> list[Bare]:
-    """Take off what several names begin or end with, if what is left is known by its unit.
+    """Remove a prefix or suffix that names share, if this makes some of them known.
 
     Files: loggers of the LML braking tribometer, "Fnlj(N)", "Ftlj(N)" and "lj1_C(Nm)", "lj1_F(N)"
     (LaboratoireMecaniqueLille/Braking_Tribometer_Processing).
@@ -93,7 +93,7 @@ def _without_tag(bare: list[Bare]) -> list[Bare]:
 
 
 def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:
-    """Use a rising column in a unit of time as time if no name identifies it.
+    """Take a rising column in a unit of time as the time if no name means time.
 
     The names of several clocks in one table begin with t: "t_force (s)", "t_motor (s)".
     """

@@ -1,4 +1,4 @@
-"""Columns whose numbers prove their quantities and units."""
+"""Quantities and units of columns that their numbers prove."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.quantities import QUANTITIES, unit_conversion
 
-_SCORE_MARGIN = 0.1  # of the best score: names that suit a quantity about as well
-_READS_LOAD = 0.1  # of a stated load: controllers keep it so well
-_INNER = (0.02, 0.98)  # quantiles of a position: it may be elsewhere before the test
-_SHORTEST, _LONGEST = 0.6, 1.2  # strokes that a position spans
+_SCORE_MARGIN = 0.1  # quantities with a score that much below the best are possible, too
+_READS_LOAD = 0.1  # largest relative deviation of a controlled load from the stated one
+_INNER = (0.02, 0.98)  # quantiles of a position, which may exceed the stroke before the test
+_SHORTEST, _LONGEST = 0.6, 1.2  # range of a position divided by the stroke
 _LENGTHS = ("um", "mm", "cm", "m")
-_MAX_COLUMNS = 100  # columns: of more, too many may be members of a rule
+_MAX_COLUMNS = 100  # columns; with more, too many combinations would have to be tested
 _NAMED = ("mass", "turns", "distance", "torque")
 
 
 def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Proof]:
-    """Return what rules of physics prove of columns, by their place from 0."""
+    """Return the quantities and units that rules of physics prove, by column index from 0."""
     bare = [bare_name(column) for column in columns]
     if len(columns) > _MAX_COLUMNS or all(unit is not None for _, unit, _ in bare):
-        return {}  # nothing is left to be proven
+        return {}  # nothing is left to prove
     candidates = [_candidate(*one, values) for one, values in zip(bare, numbers.T, strict=True)]
     return prove(candidates, numbers)
 
 
 def add_proven_units(columns: Sequence[DraftColumn], proofs: dict[int, Proof]) -> list[DraftColumn]:
-    """Return columns with proven units if the file states none."""
+    """Return the columns with the proven units where the file states none."""
     return [
         column._replace(unit=proof.unit)
         if (proof := proofs.get(place)) is not None and bare_name(column)[1] is None
@@ -53,7 +53,7 @@ def add_proven_units(columns: Sequence[DraftColumn], proofs: dict[int, Proof]) -
 def add_unit_of_load(
     columns: Sequence[DraftColumn], numbers: np.ndarray, load: Amount | None
 ) -> list[DraftColumn]:
-    """Return forces without units in the unit of the stated load, if a load cell reads it.
+    """Give forces without a unit the unit of the stated load, if a load cell reads that load.
 
     File: Fx, Fy and Fz = -20.3 of "PAO4+OA-10_20N_100mms" (liampond/EgbertsTribometer).
     """
@@ -97,7 +97,7 @@ def add_unit_of_stroke(
 
 
 def _force_of(column: DraftColumn) -> str:
-    """Return the force that a column without a unit is surely named for; "" if none."""
+    """Return which force the name of a column without a unit certainly means; "" if none."""
     name, unit, _ = bare_name(column)
     options = matches(name, unit) if unit is None else []
     sure = bool(options) and options[0].score >= KNOWN_WORD
@@ -125,11 +125,11 @@ def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Ca
 def restrict_to_proofs(
     matched: Sequence[list[Match]], proofs: dict[int, Proof], numbers: np.ndarray
 ) -> list[list[Match]]:
-    """Return the possible quantities of names, given those that are proven."""
+    """Return the possible quantities of each column, after excluding what the proofs contradict."""
     taken: dict[str, int] = {}
     for place in sorted(proofs):
         taken.setdefault(proofs[place].quantity, place)
-    # the sliding speed is known: a distance adds nothing
+    # with a known sliding speed, a distance adds no information
     settled = {*taken, "position"} if "sliding_velocity" in taken else set(taken)
 
     def options_of(place: int, options: list[Match]) -> list[Match]:

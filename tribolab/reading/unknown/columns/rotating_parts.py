@@ -1,4 +1,4 @@
-"""Columns of what turns, which are no quantity of a run: a torque, an angle, a radius."""
+"""Columns of rotating rigs that are not quantities of a run: torque, angle, turns, track radius."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from tribolab.units.spellings import MICRO
 
 _TORQUE = key_pattern("torque")
 _OTHER_MOMENT = part_pattern("other_moment")
-_TORQUE_UNIT = re.compile(rf"[cmku{MICRO}]?N\s?[·⋅・∙•*.]?\s?[cmu{MICRO}]?m")  # and no J
+_TORQUE_UNIT = re.compile(rf"[cmku{MICRO}]?N\s?[·⋅・∙•*.]?\s?[cmu{MICRO}]?m")  # joules are excluded
 _ANGLE = key_pattern("angle")
-# what turns, where its unit is one of angles
+# names of rotating parts; in a unit of angle they are angles
 _TURNS_IN_ANGLES = part_pattern("turns_in_angles")
 _TURNS = re.compile(
     r"^(?:number|no|nr|n)?(?:of)?(?:revolution|turn|rev|rotation|umdrehung)(?:s|en)?$"
@@ -28,22 +28,22 @@ _WHOLE = 0.5  # share of whole numbers above which a column counts whole turns
 
 
 def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the only torque column, by its name or else by its unit; with its unit.
+    """Return the only torque column, found by name or else by unit; None if there are several.
 
-    A torque named by a person takes precedence.
+    A column that the user named as the torque takes precedence.
     """
-    if (said := _said(columns, "torque")) is not None:
+    if (said := _named_by_user(columns, "torque")) is not None:
         return said
-    # an instrumented treadmill: "Pitch Moment (Nm)" (csu-hmc/pitch-moment-compensation)
+    # a treadmill has another moment: "Pitch Moment (Nm)" (csu-hmc/pitch-moment-compensation)
     columns = [c for c in columns if not _OTHER_MOMENT.search(normalise_label(c.label))]
     units = [_name_and_unit(column)[1] for column in columns if not column.used]
-    told = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
+    single = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
     named = _only_column(columns, _TORQUE.search, "N m")
-    return named or (_only_column(columns, str, "N m") if told else None)
+    return named or (_only_column(columns, str, "N m") if single else None)
 
 
 def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the only column named as a torque in divisions, counts or volts."""
+    """Return the only torque column without a calibration: in divisions, counts or volts."""
     if torque_of(columns) is not None:
         return None
     fitting = []
@@ -57,13 +57,13 @@ def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the only column with an angle of rotation, and its unit."""
-    named = _said(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
+    """Return the only column with an angle of rotation, else None."""
+    named = _named_by_user(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
     return named or _only_column(columns, _TURNS_IN_ANGLES.search, "rad")
 
 
 def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn | None:
-    """Return the one column that counts turns and parts of them, which is an angle."""
+    """Return the only column that counts fractions of turns, which is an angle; else None."""
     fitting = []
     for column in columns:
         name, unit = _name_and_unit(column)
@@ -76,12 +76,12 @@ def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn
 
 
 def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the only column with the radius of a track, and its unit."""
+    """Return the only column with the track radius, else None."""
     return _only_column(columns, is_track_radius, "m")
 
 
-def _said(columns: Sequence[DraftColumn], name: str) -> DraftColumn | None:
-    """Return the column that a person called so."""
+def _named_by_user(columns: Sequence[DraftColumn], name: str) -> DraftColumn | None:
+    """Return the column that the user named as the torque or angle."""
     return next((column for column in columns if column.said == name), None)
 
 

@@ -33,21 +33,21 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason
 from tribolab.units.quantities import unit_conversion
 
-_AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
-_WORDS = rf"(?:[^\W\d][^;|,；，]|[{UNPARTED}])[^;|,；，]{{1,60}}"  # two of such letters make a word
-_KNOWN_SHARE = 0.3  # of an explanation that a known word makes up
-_LETTERS_OF_NAME = 4  # of a name that a text mentions
+_AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # axes of a force sensor
+_WORDS = rf"(?:[^\W\d][^;|,；，]|[{UNPARTED}])[^;|,；，]{{1,60}}"
+_KNOWN_SHARE = 0.3  # least share of an explanation that a known word covers
+_LETTERS_OF_NAME = 4  # least letters of a name that is searched for in the text
 _STATED = 8.0  # log odds of an explicit statement in the text
-_BY_LOAD = 3.0
-_LOADED = 0.4  # of the largest reading
-_MAX_READINGS = 0.98  # the few above are faults
+_BY_LOAD = 3.0  # log odds if a reading is compared with the stated load
+_LOADED = 0.4  # of the largest reading; above it, the contact is loaded
+_MAX_READINGS = 0.98  # quantile that is taken as the largest reading: few outliers exceed it
 _MOTION = ("position", "sliding_velocity", "set_speed")
-_MAX_OF_SLED = 5.0  # times its weight: no dry contact has a higher coefficient of friction
-_READS_LOAD = (0.75, 1.33)  # times the stated load: a reading of the load itself
+_MAX_OF_SLED = 5.0  # pulling force over weight: no dry contact has a higher coefficient
+_READS_LOAD = (0.75, 1.33)  # reading over stated load, if the cell measures the load
 
 
 def legend_evidence(layout: Layout) -> Rule:
-    """Return the rule that a text names the axes of a sensor: "Fx = vertical"."""
+    """Return the rule that identifies sensor axes by the text: "Fx = vertical"."""
 
     def rule(facts: Facts) -> Iterator[Evidence]:
         if facts.kind != "run":
@@ -75,7 +75,7 @@ def _is_axis(facts: Facts, place: int) -> bool:
 
 
 def _explanation(name: str, lines: Sequence[str]) -> str:
-    """Return the explanation of a name in a line: "Fx = vertical", or "vertical force (Fx)"."""
+    """Return how a line explains a column name: "Fx = vertical", or "vertical force (Fx)"."""
     name = re.escape(name.strip())
     after = re.compile(
         rf"(?<![^\W_]){name}(?![^\W_])\s{{0,3}}[=:：＝–—-]\s{{0,3}}(?P<about>{_WORDS})"
@@ -88,7 +88,10 @@ def _explanation(name: str, lines: Sequence[str]) -> str:
 
 
 def stated_load_evidence(layout: Layout) -> Rule:
-    """Return the rule that a cell reading the stated load presses, and any other cell drags."""
+    """Return the rule that the cell measures the normal force if it reads the stated load.
+
+    Otherwise the cell measures the friction force.
+    """
 
     def rule(facts: Facts) -> Iterator[Evidence]:
         cells = _undecided_cells(facts) if facts.kind == "run" else []
@@ -102,11 +105,11 @@ def stated_load_evidence(layout: Layout) -> Rule:
                 why = "it is the only force on what slides; the load is not stated"
                 yield Evidence(place, "friction_force", _BY_LOAD, why, proposes=True, sure=True)
             elif _is_load_of_tester(facts, place) and torque_of(facts.columns) is None:
-                # the load cell of a testing machine that pulls: "Load" next to a travel
+                # "Load" of a testing machine may be the force that pulls
                 doubt = "it is the normal force, although no other column is the friction"
                 yield Evidence(place, "normal_force", 0.0, doubt=doubt)
             return
-        # no cell reads the weight of a sled
+        # a sled is pressed by its weight, which no cell measures
         sled = part_pattern("sled").search(normalise_label(load.text)) is not None
         share = _share_of_load(facts, place, load)
         if not 0 < share < (_MAX_OF_SLED if sled else _READS_LOAD[1]):
@@ -119,7 +122,7 @@ def stated_load_evidence(layout: Layout) -> Rule:
         doubt = f"it is the friction force: {why}"
         if presses:
             why = doubt = f"it is the normal force: it reads what '{load.text}' says"
-        # at a lever arm a cell reads otherwise
+        # on a lever arm, a cell reads another force than the friction
         only = _is_called_force(facts, place) and find_arm(stated) is None
         sure = not presses and (sled or only)
         yield Evidence(
@@ -131,13 +134,13 @@ def stated_load_evidence(layout: Layout) -> Rule:
 
 
 def _undecided_cells(facts: Facts) -> list[int]:
-    """Return the columns whose force the stated load may identify."""
+    """Return the indices of force columns that the stated load may identify."""
     places = range(len(facts.columns))
     either = [place for place in places if facts.is_either_force(place)]
     held = {o[0].quantity for p, o in enumerate(facts.options) if o and p not in either}
-    if not either and not held & FRICTION:  # "Load" of a machine that pulls a sled
+    if not either and not held & FRICTION:  # "Load" of a testing machine that pulls a sled
         either = facts.places("normal_force")
-    if not either and "normal_force" not in held:  # "Force" next to a dead weight
+    if not either and "normal_force" not in held:  # "Force" of a rig with a dead weight
         named = [place for place in places if _is_called_force(facts, place)]
         either = [p for p in named if p in facts.places("friction_force") and not facts.is_named(p)]
         if not either and not held & FRICTION:
@@ -151,13 +154,13 @@ def _is_called_force(facts: Facts, place: int) -> bool:
 
 
 def _is_load_of_tester(facts: Facts, place: int) -> bool:
-    """Whether a column is called as testing machines call what pulls, next to a travel."""
+    """Whether a column has a testing machine's name of its force, and a travel is recorded."""
     name = normalise_label(facts.bare[place][0])
     return bool(facts.places("position")) and bool(part_pattern("tester_load").fullmatch(name))
 
 
 def _share_of_load(facts: Facts, place: int, load: Amount) -> float:
-    """Return what a cell reads under load, in terms of the stated load."""
+    """Return the median reading of a cell under load, divided by the stated load."""
     stated = load.value * unit_conversion(load.unit or "N", "normal_force")[0]
     values = facts.numbers[:, place]
     read = np.abs(values[np.isfinite(values)])
@@ -167,7 +170,7 @@ def _share_of_load(facts: Facts, place: int, load: Amount) -> float:
 
 
 def mean_coefficient_evidence(layout: Layout) -> Rule:
-    """Return the rule that the instrument's mean coefficient adds nothing to forces in the file."""
+    """Return the rule that ignores the instrument's own coefficient if the forces are known."""
 
     def rule(facts: Facts) -> Iterator[Evidence]:
         if facts.kind != "run" or not facts.places("friction_force"):
@@ -185,9 +188,9 @@ def mean_coefficient_evidence(layout: Layout) -> Rule:
 def unused_force_columns(
     layout: Layout, columns: Sequence[DraftColumn], used: Collection[int]
 ) -> list[str]:
-    """List columns in units of force that are not used although the text above mentions them.
+    """Return sentences on unused force columns that the text above the table mentions.
 
-    One of them may have to be subtracted or added.
+    Such a force may have to be subtracted from the friction, or added to it.
     """
     lines = layout.sentences()
     said = []

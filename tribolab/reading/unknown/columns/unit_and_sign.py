@@ -1,4 +1,4 @@
-"""A column whose quantity is known: its unit and sign, what of it is a guess, what is left open."""
+"""Unit and sign of a column whose quantity is known, with guesses and open questions."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from tribolab.reading.unknown.columns.cells import counted_from
 from tribolab.reading.unknown.model import DraftColumn, Kind, other_units, time_unit
 from tribolab.units.quantities import quantity
 
-Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
-FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # what a coefficient is made of
-IN_SECONDS = "time is in s"  # what is guessed of a clock without a unit
-_NOISE = 0.1  # of the highest load, what a sensor without a load shows
-_BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # a unit stands there, if any
+Bare = tuple[str, str | None, bool]  # name, unit, whether the dialect must state the unit
+FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # for a coefficient
+IN_SECONDS = "time is in s"  # guess for a clock without a unit
+_NOISE = 0.1  # of the highest load; an unloaded sensor may show as much
+_BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # the place of a unit
 _FACTOR = re.compile(
     r"[x×*·]?\s?\b10\s?\^\s?-?\d+|[x×*·]\s?1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
 )
-# beside friction: which column is taken for such a quantity changes no coefficient of friction
+# quantities on which no coefficient of friction depends, so that nothing is asked about them
 _ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
 
 
@@ -34,18 +34,18 @@ def filled_in(
     kind: Kind,
     several: bool,
 ) -> DraftColumn:
-    """Return a column with its quantity.
+    """Return a column with its quantity, unit and sign, and the guesses about them.
 
     Parameters
     ----------
     column, bare
         The column, and its name without the unit.
     option
-        The quantity meant by its name.
+        The quantity, and how well the name suits it.
     values
         Its numbers as written (row).
     kind
-        What the file is.
+        Whether the file is a run, a scan or another table.
     several
         Whether other columns' names suit the quantity as well.
     """
@@ -58,7 +58,7 @@ def filled_in(
     return column._replace(
         quantity=name,
         unit=reading.unit,
-        sign=-1 if name == "normal_force" and _is_pressed_negatively(finite) else 1,
+        sign=-1 if name == "normal_force" and _is_negative_load(finite) else 1,
         optional=not finite.size and name != "time",
         used=used and (bool(finite.size) or name != "time"),
         guessed=(*_doubts_of_name(column, bare, option, kind, several=several), *reading.guessed),
@@ -70,7 +70,7 @@ def filled_in(
 
 
 class _Reading(NamedTuple):
-    """The unit in which a column is read, what of it is a guess, and what is missing."""
+    """Unit in which a column is read, guesses about it, and what the user has to fill in."""
 
     unit: str | None
     guessed: tuple[str, ...] = ()
@@ -80,29 +80,29 @@ class _Reading(NamedTuple):
     epoch: str = ""
 
 
-def _is_pressed_negatively(values: np.ndarray) -> bool:
-    """Whether a load is recorded with the opposite sign, apart from noise before contact."""
+def _is_negative_load(values: np.ndarray) -> bool:
+    """Whether a load is recorded as negative, apart from noise before contact."""
     return bool(values.size) and values.min() < 0 and values.max() < _NOISE * -values.min()
 
 
 def _doubts_of_name(
     column: DraftColumn, bare: Bare, option: Match, kind: Kind, *, several: bool
 ) -> list[str]:
-    """List what a person has to confirm about the name of a column."""
+    """Return what the user has to confirm about the name of a column."""
     name, unit, _ = bare
     aside, doubts = option.quantity in _ASIDE, []
     if option.score < KNOWN_WORD and not aside:
         doubts.append(f"the name means {quantity(option.quantity).long_name}")
     if several and not aside:
         doubts.append(f"of several columns for {option.quantity} it is the one meant")
-    # a load in grams is a mass that presses
+    # a load in grams is a dead weight, without doubt
     weight = option.quantity == "normal_force" and key_pattern("load").search(normalise_label(name))
     if option.unit and not weight and kind != "scan":
         doubts.append(f"'{shown(unit)}' means {option.unit}")
     if role_of(name) == "extreme" and option.quantity in FORCES:
         doubts.append("by its name it is not the signal but its extremes or scatter")
     factor = _FACTOR.search(column.label)
-    if factor and factor[0].lstrip("x×*· ") not in (unit or ""):  # the unit's own is read
+    if factor and factor[0].lstrip("x×*· ") not in (unit or ""):  # a factor in the unit is applied
         doubts.append(f"'{factor[0]}' in its name changes no number")
     return doubts
 
@@ -110,7 +110,7 @@ def _doubts_of_name(
 def _unit_reading(
     column: DraftColumn, bare: Bare, option: Match, values: np.ndarray, kind: Kind
 ) -> _Reading:
-    """Return the unit of a column, or what is missing for it."""
+    """Return the unit in which a column is read, or what is missing to determine it."""
     name, unit, say_unit = bare
     si_unit, label = quantity(option.quantity).unit, shown(column.label)
     timed = option.quantity == "time"
@@ -126,8 +126,8 @@ def _unit_reading(
         return _Reading(written, epoch=epoch)
     if counted is not None:
         return _Reading(counted.unit, epoch=epoch)
-    stands = _BRACKETS.search(column.label)
-    why = f", for '{shown(stands[1])}' is no unit that is known" if stands else ""
+    bracket = _BRACKETS.search(column.label)
+    why = f", for '{shown(bracket[1])}' is no unit that is known" if bracket else ""
     if timed or kind == "scan":
         written = _likely_unit(option.quantity, values)
         of = "s" if timed else "height" if option.quantity == "height" else "m"

@@ -1,1 +1,1 @@
-"""Quantities that follow from columns and stated amounts."""
+"""Quantities that are derived from columns and stated amounts."""

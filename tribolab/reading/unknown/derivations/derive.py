@@ -1,4 +1,4 @@
-"""Quantities without a column that follow from columns and stated values."""
+"""Quantities of a run that no column contains, derived from columns and stated values."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from tribolab.reading.unknown.model import DraftColumn, Understood
 from tribolab.units.quantities import unit_conversion
 
 _MEASURED = ("friction_reading", "arm_force", "friction_force_signal")
-_PRESSED = 0.5  # of the largest load: what is less is no contact
-_HELD = 1.1  # times what was set, or as much less: a measured load that is held at it
+_PRESSED = 0.5  # of the largest load; below it, the contact is open
+_HELD = 1.1  # largest ratio of a controlled load to its set-point, and of set-point to load
 
 
 def what_follows(layout: Layout, understood: Understood) -> Follows:
-    """Find the quantities of a run that follow from others.
+    """Return the quantities of a run that follow from others by the rules of physics.toml.
 
-    The rules are those of physics.toml; only what is stated with its unit is used.
+    Only amounts that are stated with a unit are used.
     """
-    return _derived(_Same(layout, understood)) if understood.kind == "run" else Follows()
+    return _derived(_CacheKey(layout, understood)) if understood.kind == "run" else Follows()
 
 
-class _Same(NamedTuple):
-    """What was found out about a file, which equals nothing but itself."""
+class _CacheKey(NamedTuple):
+    """Layout and interpretation of a file as a key of the cache, compared by identity."""
 
     layout: Layout
     understood: Understood
@@ -42,11 +42,11 @@ class _Same(NamedTuple):
         return hash((id(self.layout), id(self.understood)))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and all(map(operator.is_, self, other))
+        return isinstance(other, _CacheKey) and all(map(operator.is_, self, other))
 
 
-@functools.lru_cache(maxsize=2)  # it is asked for by questions, remarks and the dialect
-def _derived(found: _Same) -> Follows:
+@functools.lru_cache(maxsize=2)  # questions, remarks and the dialect all need it
+def _derived(found: _CacheKey) -> Follows:
     layout, understood = found
     known = find_known(layout, understood)
     result = Follows(zero_in_doubt=known.zero_in_doubt, given=known.given, facts=known.facts)
@@ -60,12 +60,12 @@ def _derived(found: _Same) -> Follows:
 
 
 def held_quantities(understood: Understood) -> set[str]:
-    """Return the quantities of columns, including those whose unit is still missing."""
+    """Return the quantities of all columns, including columns whose unit is still missing."""
     return {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
 
 
 def _add_friction(result: Follows, known: KnownRun, understood: Understood) -> Follows:
-    """Add the formula of the friction force, where no column is it."""
+    """Add the formula of the friction force if no column contains it."""
     friction = derive("friction_force", known.given, known.facts)
     others = held_quantities(understood) & (SAYS_FRICTION - {"friction_force"})
     by_area = "contact_area" in known.given and "normal_force" in known.given
@@ -76,7 +76,7 @@ def _add_friction(result: Follows, known: KnownRun, understood: Understood) -> F
 
 
 def _add_load(result: Follows, understood: Understood, known: KnownRun) -> Follows:
-    """Add the formula of the load, where nothing measures that on the contacts."""
+    """Add the formula of the load on the contacts, or the stated load."""
     names = held_quantities(understood)
     friction = names | {formula.quantity for formula in result.formulas}
     if "position" in names and result.speed is None:
@@ -93,13 +93,13 @@ def _add_load(result: Follows, understood: Understood, known: KnownRun) -> Follo
         return result.add_derivation(load, about)
     measured = names & {"normal_force", "normal_stress", "set_normal_force"}
     if stated is not None and (not measured or _is_held(stated, understood)):
-        # under which a coefficient stands, or what the measured one was set to
+        # the load of a recorded coefficient, or the set-point of a measured load
         return result.with_values(stated)
     return result
 
 
 def _set_load(load: Derivation[Source] | None) -> Source | str:
-    """Return the load that was set or stated, if no other information gives it."""
+    """Return the set or stated load from which the load is derived; None if it is measured."""
     for leaf in load.leaves if load is not None and load.rule is not None else ():
         measured = isinstance(leaf.source, DraftColumn) and leaf.source.quantity == "normal_force"
         if leaf.quantity in ("set_normal_force", "axial_force") and not measured:
@@ -114,7 +114,7 @@ def _quoted(source: Source | str) -> str:
 
 
 def _is_held(load: Amount, understood: Understood) -> bool:
-    """Whether the one column of the load stays at what the text states: it is its set-point."""
+    """Whether the only measured load stays at the stated load, which is then its set-point."""
     columns = [c for c in understood.columns if c.used and c.quantity == "normal_force"]
     if len(columns) != 1 or load.source != "preamble":
         return False

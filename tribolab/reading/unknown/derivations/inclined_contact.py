@@ -1,7 +1,7 @@
-"""Contacts that lie at an angle: what presses along the axis is not the load on them.
+"""Inclined contacts, whose normal forces differ from the axial force.
 
-A ball on three plates, or one ball on three others, wedges itself in: the normal forces of all
-contacts together are the axial force over the cosine of the angle between them and the axis.
+For a ball on three plates or on three balls, the sum of the normal forces is the axial force
+divided by the cosine of the angle between contact normals and axis.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from tribolab.reading.unknown.model import DraftColumn
 
 _DIAMETERS = ("d", "dia", "diameter", "durchmesser")
 _OTHER_ANGLE = re.compile(r"(?<![\d.,])(?!45(?!\d))\d{2}(?:[.,]\d+)?\s?(?:°(?!\s?[CFK])|º|deg)")
-# cosine and sine of the angle between contacts and axis: the centres of four equal balls make a
-# regular tetrahedron; plates and pyramids have 45 degrees (Anton Paar BC 12.7)
+# cosine and sine of the angle between contact normals and axis: the centres of four equal
+# balls form a regular tetrahedron; plates and pyramids have 45 degrees (Anton Paar BC 12.7)
 _ANGLES = {
     "four_ball": (math.sqrt(2 / 3), math.sqrt(1 / 3)),
     "three_plates": (math.sqrt(1 / 2), math.sqrt(1 / 2)),
@@ -33,9 +33,9 @@ _ANGLES = {
 
 
 class Inclined(NamedTuple):
-    """Contacts at an angle: where it is said, and the cosine and sine of their angle to the axis.
+    """Inclined contacts: the text that states them, and cosine and sine of their angle to the axis.
 
-    Both are 0 if the angle is not known; with `guess` it is to be asked.
+    If the angle is unknown, both are 0 and `guess` is a question to the user.
     """
 
     text: str
@@ -45,7 +45,7 @@ class Inclined(NamedTuple):
 
 
 def find_inclined(layout: Layout) -> Inclined | None:
-    """Return the inclined contacts that the text above a table, or the file's name, speaks of."""
+    """Return the inclined contacts that the text above the table or the file name states."""
     texts = {text: plain_text(text) for text in layout.named_sentences}
     for kind, (cosine, sine) in _ANGLES.items():
         text = next((t for t, words in texts.items() if _pattern(kind).search(words)), "")
@@ -62,15 +62,15 @@ def find_inclined(layout: Layout) -> Inclined | None:
 
 @functools.cache
 def _pattern(kind: str) -> re.Pattern[str]:
-    """Return a pattern for contacts in plain words: "ball on 3 plates", "four ball"."""
+    """Return a pattern that finds a kind of contact in plain text: "ball on 3 plates"."""
     named = part_pattern(kind).pattern
-    if kind == "four_ball":  # and no bearing of four balls
+    if kind == "four_ball":  # but not a bearing with four balls
         named = rf"{named}(?!s)(?!\w* (?:bearing|lager|screw))"
     return re.compile(rf"(?<!\w){named}")
 
 
 def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column of the axial force, if it is not called the force on the contacts."""
+    """Return the only load column if it is the axial force rather than the contacts' own."""
     held = [c for c in columns if c.used and c.quantity == "normal_force" and not c.optional]
     on_contacts = part_pattern("on_contacts")
     named = [c for c in held if not on_contacts.search(normalise_label(bare_name(c)[0]))]
@@ -78,7 +78,7 @@ def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def _has_gap(columns: Sequence[DraftColumn]) -> bool:
-    """Whether a column is the gap of a rheometer."""
+    """Whether any column is the gap of a rheometer."""
     gap = part_pattern("gap")
     lengths = (bare_name(c) for c in columns)
     return any(
@@ -88,9 +88,9 @@ def _has_gap(columns: Sequence[DraftColumn]) -> bool:
 
 
 def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Return the guesses on the load of inclined contacts; nothing if it is known.
+    """Return guesses about the load of inclined contacts; empty if the load is known.
 
-    A rheometer presses along its axis, and its gap is in a column. Its own coefficient allows for
+    A rheometer, which records its gap, measures the axial force. Its own coefficient allows for
     the angle, its normal force does not. File: an Anton Paar MCR, "Normal Force", "Torque", "Gap".
     """
     inclined = find_inclined(layout)
@@ -116,7 +116,7 @@ def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[
 
 
 def radius_of_ball(values: Sequence[Amount]) -> Amount | None:
-    """Return the radius of the ball, if just one size of it is stated."""
+    """Return the ball radius if exactly one radius or diameter of the ball is stated."""
     ball = part_pattern("contact_ball")
     sizes = [v for v in values if v.unit and converts(v.unit, "m")]
     sizes = [v for v in sizes if ball.search(v.key) or v.key in _DIAMETERS]

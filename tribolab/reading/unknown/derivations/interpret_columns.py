@@ -61,33 +61,33 @@ from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_s
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Kind, Reason, Understood
 
-_MIN_NUMBERED = 24  # columns; fewer may be the channels of a logger
-_REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller unit
+_MIN_NUMBERED = 24  # least columns of a map; fewer may be the channels of a logger
+_REACH = 0.05  # of the length of a scan; heights with a larger range are in a smaller unit
 
 
 class _Spacing(NamedTuple):
-    """Pitch of a profile as stated above a table."""
+    """Pitch or length of a profile as stated above its table."""
 
     pitch: Amount | None
     length: Amount | None
 
     @property
     def is_stated(self) -> bool:
-        """Whether heights without positions have their places."""
+        """Whether the positions of heights follow from a stated pitch or length."""
         return self.pitch is not None or self.length is not None
 
 
 class _Interpretation(NamedTuple):
-    """What kind of file it is, its columns, and what of them is a guess."""
+    """Kind of a file, its columns, and guesses about them."""
 
     kind: Kind
     columns: list[DraftColumn]
     guesses: Sequence[str] = ()
-    pitched: bool = False  # heights have no positions, but a pitch that is or has to be stated
+    pitched: bool = False  # heights have a pitch instead of positions
 
 
 def understand(layout: Layout) -> Understood:
-    """Interpret the columns of a file."""
+    """Return the interpretation of the table of a file."""
     cells = read_cells(layout)
     spacing = _stated_spacing(layout)
     found = _interpret(layout, cells, spacing)
@@ -109,7 +109,7 @@ def _stated_spacing(layout: Layout) -> _Spacing:
 
 
 def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretation:
-    """Distinguish profiles, runs and other tables by statements, names, or numbers."""
+    """Return the kind of a table and its columns, by stated settings, names, or else numbers."""
     numbers, unit = cells.numbers, find_height_unit(layout)
     along = find_unit_along(layout)
     columns = in_stated_unit(labelled(layout), unit, along)
@@ -126,7 +126,7 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
     if has_meaning(columns):
         kind, columns = decide_by_name(layout, columns, numbers, proofs, placed=spacing.is_stated)
         if kind == "table" and find_gain(layout, columns, "friction_force") is not None:
-            kind = "run"  # volts, and what one is worth
+            kind = "run"  # volts with a stated gain
         return _Interpretation(kind, columns, pitched=spacing.is_stated)
     # late: starting stays quick
     from tribolab.reading.unknown.columns.behaviour import by_behaviour
@@ -136,7 +136,7 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
 
 
 def _numbers_its_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
-    """Whether rows and columns are numbered as the points of a map are."""
+    """Whether rows and columns are numbered like those of a map."""
     if len(columns) <= _MIN_NUMBERED:
         return False
     # late: starting stays quick
@@ -154,7 +154,7 @@ def _profile_of(
     *,
     stated: bool,
 ) -> _Interpretation | None:
-    """Return columns as profiles if they are heights alone, or side by side."""
+    """Return the columns as profiles if they are only heights with a stated pitch, else None."""
     alone = layout.width == 1 and _may_be_heights(columns[0])
     if spacing.is_stated and (alone or side_by_side(columns)):
         likely = _likely_unit(numbers, spacing.pitch)
@@ -166,7 +166,7 @@ def _profile_of(
 def _combined_forces(
     layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
 ) -> tuple[list[DraftColumn], list[str]]:
-    """Combine the forces and speeds of several columns; list the doubts."""
+    """Return the columns after comparing forces and speeds with each other, and the doubts."""
     columns = force_or_ratio(columns)
     pair = find_surface_speeds(layout, columns, numbers)
     columns = exclude_surface_speeds(columns, pair)
@@ -178,7 +178,7 @@ def _combined_forces(
 
 
 def _without_words(columns: list[DraftColumn], cells: Cells) -> list[DraftColumn]:
-    """Leave out columns of words."""
+    """Mark columns of words as not used."""
     return [
         column.unused(Reason.TEXT.value.format(shown(text)), reason=Reason.TEXT)
         if (text := cells.text[column.place - 1]) and not column.form
@@ -188,7 +188,7 @@ def _without_words(columns: list[DraftColumn], cells: Cells) -> list[DraftColumn
 
 
 def _of_run(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
-    """Return what is understood of a run: its clock, its zero, and how often it is sampled."""
+    """Return the interpretation of a run with its clock or sampling rate."""
     numbers = cells.numbers
     columns = _without_counter(layout, found.columns, numbers)
     period = summed(columns, numbers)
@@ -205,7 +205,7 @@ def _of_run(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
 def _of_other(
     layout: Layout, cells: Cells, spacing: _Spacing, found: _Interpretation
 ) -> Understood:
-    """Return what is understood of a scan, or of a table that is neither scan nor run."""
+    """Return the interpretation of a scan, or of a table that is neither scan nor run."""
     numbers = cells.numbers
     period = summed(found.columns, numbers)
     result = _clocked(layout, cells, found)._replace(period=period)
@@ -238,7 +238,7 @@ def _of_other(
 
 
 def _clocked(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
-    """Return what is understood, with the settings of the clock."""
+    """Return the interpretation with the settings of the clock."""
     on_repeat, restart, columns = find_clock(layout, found.columns, cells.numbers)
     return Understood(
         _kind_by_columns(found.kind, layout, columns),
@@ -252,16 +252,16 @@ def _clocked(layout: Layout, cells: Cells, found: _Interpretation) -> Understood
 
 
 def _missing_words(cells: Cells, columns: Sequence[DraftColumn]) -> tuple[str, ...]:
-    """Return the words for a missing value in the columns that are read."""
+    """Return the words that stand for missing values in the columns that are read."""
     used = (cells.missing[column.place - 1] for column in columns if column.used)
     return tuple(dict.fromkeys(word for words in used for word in words))
 
 
 def _kind_by_columns(kind: Kind, layout: Layout, columns: list[DraftColumn]) -> Kind:
-    """Return what a file is, given its columns: time alone is a run if a force can be derived."""
+    """Return the kind of a file; a run without signals is a table, unless a force follows."""
     if kind == "table" or any(c.used and c.quantity != "time" for c in columns):
         return kind
-    if any(c.fill_in and c.quantity in FORCES for c in columns):  # whose unit is asked for
+    if any(c.fill_in and c.quantity in FORCES for c in columns):  # the user is asked for the unit
         return kind
     timed = any(c.quantity == "time" and c.used for c in columns)
     made = torque_of(columns) is not None or angle_of(columns) is not None
@@ -270,7 +270,7 @@ def _kind_by_columns(kind: Kind, layout: Layout, columns: list[DraftColumn]) -> 
 
 
 def _sampled(layout: Layout, result: Understood) -> Understood:
-    """Add how often a run without a clock is sampled."""
+    """Add the stated sampling rate, or speed of a position, to a run without a clock."""
     columns = list(result.columns)
     if any(column.used and column.quantity == "time" for column in columns):
         return result
@@ -290,7 +290,7 @@ def _sampled(layout: Layout, result: Understood) -> Understood:
 def _without_counter(
     layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
 ) -> list[DraftColumn]:
-    """Take no count of the rows for a clock where the text states how often they come."""
+    """Ignore a row counter as the clock if the text states the sampling rate."""
     clock = next((c for c in columns if c.used and c.quantity == "time"), None)
     if clock is None or not clock.guessed or clock.file_unit is not None:
         return columns
@@ -303,7 +303,7 @@ def _without_counter(
 
 
 def _may_be_heights(column: DraftColumn) -> bool:
-    """Whether a single column may be heights: its name is not known, nor its unit another's."""
+    """Whether the only column of a table may be heights, by its name and unit."""
     name, unit, _ = bare_name(column)
     if unit is None:
         return not matches(name, None)
@@ -313,7 +313,7 @@ def _may_be_heights(column: DraftColumn) -> bool:
 
 
 def _likely_unit(numbers: np.ndarray, pitch: Amount | None) -> str:
-    """Return the unit that heights may be in: um, or nm where they were as large as the scan."""
+    """Return the likely unit of heights: um, or nm if um would be too large for the scan."""
     step = pitch.si("m") if pitch is not None else 0.0
     reach = float(np.nanmax(numbers) - np.nanmin(numbers)) if np.isfinite(numbers).any() else 0.0
     return "nm" if 0 < step * len(numbers) * _REACH < 1e-6 * reach else "um"

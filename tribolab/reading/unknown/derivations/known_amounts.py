@@ -1,4 +1,4 @@
-"""What is known of a run, as the rules of physics want it: columns, stated amounts, answers."""
+"""Known quantities of a run for rules of physics: columns, stated amounts, and answers."""
 
 from __future__ import annotations
 
@@ -53,15 +53,15 @@ from tribolab.reading.unknown.header.zero import find_zero, friction_column, zer
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
 
-_STEADY = 0.05  # of its median: a rotation speed that a controller holds
+_STEADY = 0.05  # largest relative deviation of a controlled rotation speed from its median
 _SPEEDS = ("sliding_velocity", "rotation_speed")
 
 
 class KnownRun(NamedTuple):
-    """What is known of a run by quantity; facts of the rig, and how strokes were stated.
+    """Known quantities of a run, facts about its rig, and the strokes as stated.
 
-    `zero_in_doubt` is a stated zero of which nothing says whether it was taken off; `crank` what
-    the text says of a crank.
+    `zero_in_doubt` is a stated zero that may or may not be subtracted already; `crank` is the text
+    about a crank drive.
     """
 
     given: Known
@@ -73,12 +73,12 @@ class KnownRun(NamedTuple):
 
 
 class _Facts:
-    """Collects what is known; what came first stays."""
+    """Collector of known quantities; of several sources for one quantity, the first is kept."""
 
     def __init__(self, layout: Layout, understood: Understood) -> None:
         self.layout, self.understood = layout, understood
         self.columns = understood.columns
-        # with a unit still to be filled in, a column is there all the same
+        # columns whose unit the user still has to fill in are included
         self.names = {c.quantity for c in self.columns if c.quantity and (c.used or c.fill_in)}
         self.values = list(numeric_settings(layout))
         self.given: Known = {}
@@ -96,7 +96,7 @@ class _Facts:
 
 
 def find_known(layout: Layout, understood: Understood) -> KnownRun:
-    """Return what is known of a run."""
+    """Return the known quantities of a run from its columns, its text and the user's answers."""
     known = _Facts(layout, understood)
     doubt = _add_friction(known)
     _add_columns(known)
@@ -118,7 +118,7 @@ def find_known(layout: Layout, understood: Understood) -> KnownRun:
 
 
 def _add_friction(known: _Facts) -> Amount | None:
-    """Add the force or the torque that was measured, and its zero; return a zero in doubt."""
+    """Add the measured friction force or torque and its zero; return a zero that is in doubt."""
     layout, said = known.layout, known.understood.zero
     reading, torque = friction_column(known.columns), torque_of(known.columns)
     if reading is not None and is_at_arm(reading):
@@ -143,7 +143,7 @@ def _add_friction(known: _Facts) -> Amount | None:
 
 
 def _add_columns(known: _Facts) -> None:
-    """Add the quantities of columns; a position gives a speed only if rows have times."""
+    """Add the quantities of columns, and a stated contact area; omit a position without time."""
     timed = "time" in known.names or known.understood.rate_pattern or known.understood.rate
     held = known.names if timed else known.names - {"position"}
     for column in known.columns:
@@ -160,7 +160,7 @@ def _add_columns(known: _Facts) -> None:
 
 
 def _add_gains(known: _Facts) -> Amount | None:
-    """Add forces in volts with a stated gain; return a zero of the friction that may be in it."""
+    """Add forces in volts with their stated gain; return a friction zero that is in doubt."""
     doubt = None
     for force in ("friction_force", "normal_force"):
         gain = None if force in known.names else find_gain(known.layout, known.columns, force)
@@ -174,7 +174,7 @@ def _add_gains(known: _Facts) -> Amount | None:
 
 
 def _pair_of(known: _Facts) -> Pair | None:
-    """Return the speeds of two surfaces if no column contains the sliding speed."""
+    """Return the speed columns of two surfaces if no column is the sliding speed."""
     pair = find_surface_speeds(known.layout, known.columns, known.understood.numbers)
     used = {column.place for column in known.columns if column.used}
     taken = pair is not None and {column.place for column in pair.columns} & used
@@ -182,7 +182,7 @@ def _pair_of(known: _Facts) -> Pair | None:
 
 
 def _add_surfaces(known: _Facts, pair: Pair) -> None:
-    """Add how fast two surfaces go, so that friction is positive where the first is the faster."""
+    """Add the speeds of two surfaces, ordered so that friction and slip have the same sign."""
     said, numbers = known.understood.radius, known.understood.numbers
     values = () if said else radii_of_surfaces(pair, known.values)
     radii = [Given("", f"'{said}'", None)] * 2 if said else [Given("", v.name, v) for v in values]
@@ -201,7 +201,7 @@ def _add_surfaces(known: _Facts, pair: Pair) -> None:
     if not radii:
         _add_track(known)
         return
-    if len({value.number * value.scale for value in values}) < 2:  # else: at which does it act?
+    if len({value.number * value.scale for value in values}) < 2:  # else ambiguous
         known.add("track_radius", radii[0].symbol, radii[0].source)
 
 
@@ -213,7 +213,7 @@ def _add_track(known: _Facts) -> None:
     if (agreed := confirmed_value(values, understood.agreed, "radius")) is not None:
         known.add_value("track_radius", agreed._replace(name="track_radius", to="m", guess=""))
     known.add_column("track_radius", "radius", radius_of(known.columns))
-    # block on ring: the track is the outside of what turns
+    # block on ring: the track is the rim of the ring
     rim = any(mentions("slides_on_rim", text) for text in known.layout.named_sentences)
     radius, ring = find_radius(values, rim=rim), None if rim else find_ring(values)
     if ring is not None and (radius is None or radius.guess):
@@ -232,7 +232,7 @@ def _has_track(known: _Facts) -> bool:
 
 
 def _crank(layout: Layout) -> Amount | None:
-    """Return the text on a crank that drives strokes, to be stored with the run."""
+    """Return the text about a crank that drives the strokes, as a value for the dialect."""
     drive, sine = key_pattern("drive"), part_pattern("sine")
     said = [t for key, t in text_settings(layout) if drive.search(normalise_label(key))]
     crank = next((text for text in said if sine.search(normalise_label(text))), None)
@@ -240,13 +240,13 @@ def _crank(layout: Layout) -> Amount | None:
 
 
 def _turns_a_crank(known: _Facts) -> bool:
-    """Whether a column is the angle of a crank, next to how fast it turns."""
+    """Whether a column is named after a crank, and the rotation speed is known."""
     sine, turning = part_pattern("sine"), "rotation_speed" in known.given
     return turning and any(sine.search(normalise_label(c.label)) for c in known.columns)
 
 
 def _add_strokes(known: _Facts, *, crank: bool) -> Strokes | None:
-    """Add length and frequency of strokes, if both are known; return how they were stated."""
+    """Add the length and frequency of strokes if both are known; return them as stated."""
     understood = known.understood
     turning = known.given.get("rotation_speed")
     if crank:
@@ -270,7 +270,7 @@ def _add_strokes(known: _Facts, *, crank: bool) -> Strokes | None:
 
 
 def is_steady(understood: Understood) -> bool:
-    """Whether a column shows one rotation speed in all rows, so that one sliding speed holds.
+    """Whether the rotation speed is constant, so that a single sliding speed applies to all rows.
 
     File: a T-11 pin-on-disc tester, 191 rpm and "0.1m-s" in its name.
     """
@@ -283,7 +283,7 @@ def is_steady(understood: Understood) -> bool:
 
 
 def _add_speeds(known: _Facts, pair: Pair | None, *, crank: bool) -> None:
-    """Add an angle, a stated slide-roll ratio, and the speed or rotation that was set."""
+    """Add an angle, a stated slide-roll ratio, and a set-point of sliding or rotation speed."""
     turning = derive("rotation_speed", known.given) is not None
     if not turning:
         angle = angle_of(known.columns) or turns_of(known.columns, known.understood.numbers)
@@ -301,7 +301,7 @@ def _add_speeds(known: _Facts, pair: Pair | None, *, crank: bool) -> None:
 
 
 def _add_load(known: _Facts) -> None:
-    """Add the load: sums of cells, an axial force, or a load that was set or stated."""
+    """Add the load: a sum of load cells, an axial force, or a load that was set or stated."""
     weights = [c for c in known.columns if not c.used and not c.quantity and _is_weight(c)]
     if len(weights) == 1:
         known.add("mass", "mass", weights[0]._replace(unit=bare_name(weights[0])[1]))
@@ -317,7 +317,7 @@ def _add_load(known: _Facts) -> None:
     stated = find_stated_load(known.values, known.understood)
     inclined = find_inclined(known.layout)
     if inclined is not None and inclined.cosine > 0 and "friction_coefficient" not in known.names:
-        # where the instrument gives a coefficient of its own, it knows of the angle
+        # an instrument that records its own coefficient allows for the angle
         known.add("contact_cosine", f"{inclined.cosine:.6g}", None)
         if (axial := axial_force_of(known.columns)) is not None:
             known.given.pop("normal_force", None)
@@ -338,7 +338,7 @@ def _is_weight(column: DraftColumn) -> bool:
 
 
 def loads_that_add(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Return the columns of loads that add up, as written in a formula."""
+    """Return the load columns whose sum is the normal force, with units for a formula."""
     return [
         c._replace(unit=unit if say else None)
         for c in columns

@@ -1,4 +1,4 @@
-"""What a run lacks for a friction coefficient over the sliding speed, and nothing states."""
+"""Inputs that a run lacks for the coefficient of friction against sliding speed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _OF_FRICTION = ("N", "N m", "1", "Pa", "V")
 
 
 class Uncalibrated(NamedTuple):
-    """A column of friction or torque in an unknown unit."""
+    """Column of friction or torque whose calibration factor is unknown."""
 
     column: DraftColumn
     torque: bool = False
@@ -35,7 +35,7 @@ class Uncalibrated(NamedTuple):
     goals: tuple[str, ...] = ("friction",)
 
     def __str__(self) -> str:
-        """Return what is missing, and how to state it."""
+        """Return the missing calibration in words, and how to state it."""
         label = shown(self.column.label, 30)
         if self.torque:
             return (
@@ -49,14 +49,14 @@ class Uncalibrated(NamedTuple):
 
 
 def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Uncalibrated]:
-    """Return what is missing in columns and text for a friction coefficient over speed."""
+    """Return the inputs that a run lacks for the coefficient of friction against speed."""
     columns = understood.columns
     known = {name: follows.given[name] for name in follows.given}
     at_arm = "arm_force" in known
     names = held_quantities(understood) - ({"friction_force"} if at_arm else set())
     names |= {formula.quantity for formula in follows.formulas}
     if any(c.fill_in and c.reason is Reason.EITHER_FORCE for c in columns):
-        names |= {"friction_force", "normal_force"}  # it is asked which of both
+        names |= {"friction_force", "normal_force"}  # the user is asked which of the two it is
     if follows.speed is not None and follows.speed.source != "none":
         names.add("sliding_velocity")
     if any(value.name == "set_normal_force" for value in follows.values):
@@ -65,7 +65,7 @@ def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Unc
     torque = unscaled_torque_of(columns)
     torque = None if held & SAYS_FRICTION or torque_of(columns) is not None else torque
     if torque is not None or (torque_of(columns) is None and not at_arm and unknown_of(columns)):
-        names.add("friction_force")  # it is asked what one is worth, or whether one holds it
+        names.add("friction_force")  # the user is asked for its calibration, or for its column
     facts = set(follows.facts)
     if any(value.name == CRANK for value in follows.values):
         facts.add("crank")
@@ -81,7 +81,7 @@ def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Unc
 
 
 def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Return the unknown columns, except those of rotation."""
+    """Return columns with unknown names that may be the friction, except those of rotation."""
     turning = (
         torque_of(columns),
         angle_of(columns),
@@ -95,6 +95,6 @@ def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
 
 
 def _may_be_friction(column: DraftColumn) -> bool:
-    """Whether the unit of a column does not rule out a friction signal: 'h in mm' does."""
+    """Whether a column may be a friction signal by its unit; 'h in mm' may not."""
     unit = column.unit or bare_name(column)[1]
     return not unit or is_count(unit) or any(converts(unit, si) for si in _OF_FRICTION)

@@ -1,4 +1,4 @@
-"""Quantities of a run that follow from others: formulas, their inputs, and the speed."""
+"""Derived quantities of a run: formulas, their inputs, and the rule for the speed."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from tribolab.reading.unknown.model import DraftColumn
 
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
-CRANK = "drive"  # the value that says of a run what turns there
-Source = DraftColumn | Amount | None  # None of what a person said, or what is no amount
+CRANK = "drive"  # name of the value that describes a crank drive
+Source = DraftColumn | Amount | None  # None for answers of the user and for constants
 Known = dict[str, Given[Source]]
 _BEFORE_FRICTION = ("torque", "torque_reading", "arm_force", "friction_reading")
 _WIDE_RING = "friction acts at the mean of the inner and the outer radius"
 
 
 class DraftedFormula(NamedTuple):
-    """A quantity that follows: its name, formula, inputs, and the location of its zero."""
+    """Derived quantity: its name, formula, explanation, and the interval that gives its zero."""
 
     quantity: str
     formula: str
@@ -28,7 +28,7 @@ class DraftedFormula(NamedTuple):
 
 
 class SpeedBy(NamedTuple):
-    """Rule for the sliding speed: the keys of [speed], and those that are guessed."""
+    """Rule for the sliding speed: the keys of [speed], a guess about them, and its alternatives."""
 
     source: str
     settings: tuple[tuple[str, str], ...] = ()
@@ -37,10 +37,10 @@ class SpeedBy(NamedTuple):
 
 
 class Follows(NamedTuple):
-    """Formulas, the columns (with their symbols) and values that they need, and the speed.
+    """Derived quantities: formulas, the columns (with symbols) and values in them, and the speed.
 
-    `zero_in_doubt` is a stated zero of which nothing says whether it is still in the signal;
-    `given` what is known by quantity of physics.toml, and `facts` of the rig.
+    `zero_in_doubt` is a stated zero that may or may not be subtracted from the signal already;
+    `given` are the known quantities by name in physics.toml, `facts` facts about the rig.
     """
 
     formulas: tuple[DraftedFormula, ...] = ()
@@ -52,23 +52,23 @@ class Follows(NamedTuple):
     facts: frozenset[str] = frozenset()
 
     def with_values(self, *values: Amount | None) -> Follows:
-        """Return this with values that a run keeps, or formulas need."""
+        """Return a copy with further values that formulas need or the run keeps."""
         known = (value for value in values if value is not None)
         return self._replace(values=tuple(dict.fromkeys((*self.values, *known))))
 
     def with_symbols(self, *symbols: tuple[str, DraftColumn]) -> Follows:
-        """Return this with columns that formulas or the speed need."""
+        """Return a copy with further columns that formulas or the speed need."""
         return self._replace(symbols=tuple(dict.fromkeys((*self.symbols, *symbols))))
 
     def add_derivation(self, derived: Derivation[Source], about: str = "") -> Follows:
-        """Return this with the formula of what follows by a rule, and all that it needs."""
+        """Return a copy with the formula of a derived quantity, and its columns and values."""
         leaves = derived.leaves
         values = [leaf.source for leaf in leaves if isinstance(leaf.source, Amount)]
         if derived.is_doubtful:
             values = [
                 v._replace(guess=_WIDE_RING) if v.name == "outer_radius" else v for v in values
             ]
-        columns = [  # of what friction follows from, the zero is that of the friction
+        columns = [  # the zero of a column that gives the friction is the zero of the friction
             (name, leaf.source, leaf.quantity in _BEFORE_FRICTION)
             for leaf in leaves
             if isinstance(leaf.source, DraftColumn)

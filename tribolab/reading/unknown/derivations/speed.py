@@ -1,4 +1,4 @@
-"""The sliding speed in a dialect, by the rule that gives it."""
+"""Section [speed] of a drafted dialect, from the rule that gives the sliding speed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _ANOTHER_SPEED = re.compile(
 
 
 def add_speed(result: Follows, layout: Layout, understood: Understood, known: KnownRun) -> Follows:
-    """Return the quantities that follow, with the sliding speed if no column contains it."""
+    """Add the sliding speed to the derived quantities, unless a column contains it."""
     agreed = confirmed_value(known.values, understood.agreed, "speed")
     if agreed is not None:
         said = agreed._replace(name="set_speed", unit=agreed.own_unit, to=None, guess="")
@@ -68,7 +68,7 @@ def add_speed(result: Follows, layout: Layout, understood: Understood, known: Kn
 def _by_position(
     result: Follows, sliding: Derivation[Source], understood: Understood, known: KnownRun
 ) -> Follows:
-    """Let the position be the speed; keep the speed that is stated of strokes, to be compared.
+    """Compute the speed from the position; keep a stated speed of strokes for comparison.
 
     File: "x-velocity [mm/s]: 100" above strokes of 35 mm/s (liampond/EgbertsTribometer).
     """
@@ -86,7 +86,7 @@ def _by_position(
 
 
 def _by_rotation(result: Follows, sliding: Derivation[Source]) -> Follows:
-    """Let what turns, and one radius, be the speed; radii of each step are in a formula."""
+    """Compute the speed from rotation and track radius; with a radius per step, by a formula."""
     track = next(need for need in sliding.needs if need.quantity == "track_radius")
     radius = track.given
     if radius is not None and radius.source is None:
@@ -99,7 +99,7 @@ def _by_rotation(result: Follows, sliding: Derivation[Source]) -> Follows:
 
 
 def _by_set_speed(result: Follows, sliding: Derivation[Source], *, steady: bool) -> Follows:
-    """Let the speed that the text states be that of the run; ask about it unless it is steady."""
+    """Take the stated speed as that of the run; ask the user unless rotation is `steady`."""
     (stated,) = (leaf.source for leaf in sliding.leaves)
     if not isinstance(stated, Amount):
         return result
@@ -110,7 +110,7 @@ def _by_set_speed(result: Follows, sliding: Derivation[Source], *, steady: bool)
 
 
 def _asked(speed: SpeedBy, value: Amount, about: str) -> SpeedBy:
-    """Ask whether a speed of some name holds all along; what each step states holds in it."""
+    """Add the question whether a stated speed applies to the whole run, unless that is clear."""
     its = key_pattern("own_speed").search(value.key) and not _ANOTHER_SPEED.search(value.text)
     if value.source == "step" or its:
         return speed
@@ -127,14 +127,14 @@ def _by_strokes(
     understood: Understood,
     sliding: Derivation[Source],
 ) -> Follows:
-    """Let strokes be the speed: a sine where a crank drives them, which is asked about."""
+    """Compute the speed from strokes; ask whether a crank drives them if the text does not say."""
     result = result.with_values(*strokes.values).with_symbols(*strokes.symbols)
     if sliding.rule is not None and sliding.rule.condition == "crank":
         settings = (*strokes.settings, ("drive", "crank"))
         return result._replace(speed=SpeedBy("stroke", settings, strokes.guess))
     drive, guesses = understood.drive, [strokes.guess] if strokes.guess else []
     options: tuple[str, ...] = ()
-    said = _said_of_drive(layout, strokes)
+    said = _drive_texts(layout, strokes)
     if not drive and any(part_pattern("even_speed").search(text) for text in said):
         drive = "constant speed"
     elif not drive and _rows_are_means(understood, strokes):
@@ -147,7 +147,7 @@ def _by_strokes(
 
 
 def _rows_are_means(understood: Understood, strokes: Strokes) -> bool:
-    """Whether rows come too seldom to show a stroke: the mean of its speed is the same for all.
+    """Whether rows are too sparse to resolve strokes, so that each shows a mean over strokes.
 
     File: Phoenix TE 77 (Compend 2000), a row of means every few seconds.
     """
@@ -165,14 +165,14 @@ def _rows_are_means(understood: Understood, strokes: Strokes) -> bool:
     return len(often) == 1 and interval * often[0] > 1 / DENSEST
 
 
-def _said_of_drive(layout: Layout, strokes: Strokes) -> list[str]:
-    """Return the normalised text on the drive."""
+def _drive_texts(layout: Layout, strokes: Strokes) -> list[str]:
+    """Return the normalised texts that state how the strokes are driven."""
     said = []
     for key, text in text_settings(layout):
         name, words = normalise_label(key), normalise_label(text)
         if key_pattern("drive").search(name):
             said.append(words)
-        # a constant load is a mode, too, and a stroke may be said to be a sine
+        # of a mode or stroke only a sine counts: "constant load" is a mode, too
         elif key_pattern("mode").search(name) or key_pattern("stroke").search(name):
             said += [words] if part_pattern("sine").search(words) else []
     return said + [normalise_label(v.text) for v in strokes.values if v.source == "file name"]

@@ -1,4 +1,4 @@
-"""Lines above a table: what a run lacks, in unknown words; gains of forces; no-data heights."""
+"""Lines above a table that may state a missing input, a gain, or the no-data value of heights."""
 
 from __future__ import annotations
 
@@ -29,33 +29,33 @@ _QUOTED = 3
 
 
 def candidate_lines(layout: Layout, follows: Follows, lack: str) -> str:
-    """Quote the lines above the table that may state what a run lacks; "" if none does."""
-    lines = [value.text for value in _perhaps(layout, follows, lack)]
+    """Return the lines above the table that may state a missing input, in quotes; else ""."""
+    lines = [value.text for value in _fitting_amounts(layout, follows, lack)]
     lines = [" ".join(line.split()) for line in lines]
     return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(lines[:_QUOTED]))
 
 
 def likely_value(layout: Layout, follows: Follows, lack: str) -> Amount | None:
-    """Return what these lines state; None if they state nothing, or two amounts."""
-    values = [value for value in _perhaps(layout, follows, lack) if value.value > 0]
+    """Return the amount in the lines that may state a missing input; None if not unique."""
+    values = [value for value in _fitting_amounts(layout, follows, lack) if value.value > 0]
     return values[0] if len({amount_of(value) for value in values}) == 1 else None
 
 
 def amount_of(value: Amount | None) -> str:
-    """Return what a value states, as "22.5 mm"; "" of none."""
+    """Return an amount as text, such as "22.5 mm"; "" for None."""
     return "" if value is None else f"{value.value:.6g} {value.own_unit}"
 
 
 def confirmed_value(
     values: Sequence[Amount], agreed: Sequence[tuple[Agreed, str]], what: Agreed
 ) -> Amount | None:
-    """Return the value whose line a person took for the radius, the load or the speed."""
+    """Return the value whose line the user confirmed as the radius, the load or the speed."""
     lines = [line for name, line in agreed if name == what]
     return next((v for v in values if lines and v.text == lines[-1] and v.own_unit), None)
 
 
-def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
-    """Return what is stated above the table in a unit of what a run lacks."""
+def _fitting_amounts(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
+    """Return the stated amounts whose unit fits the missing input `lack`."""
     unit = _UNITS.get(lack, "")
     used = {value.text for value in follows.values}
     return [
@@ -67,7 +67,7 @@ def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
 
 
 def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount | None:
-    """Return the load that the text states, or that a person took a line for."""
+    """Return the load from the line that the user confirmed, else the load that the text states."""
     agreed = confirmed_value(values, understood.agreed, "load")
     if agreed is None:
         return find_load(values)
@@ -76,14 +76,14 @@ def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount
 
 
 class Gain(NamedTuple):
-    """The column of a force in volts, and how much force one of them is."""
+    """Column of a force in volts, and its gain (force per volt)."""
 
     column: DraftColumn
     factor: Amount
 
 
 def find_gain(layout: Layout, columns: Sequence[DraftColumn], force: str) -> Gain | None:
-    """Return the gain in N/V that just one line states for the one column of a force in volts.
+    """Return the gain of the only force column in volts, if exactly one line states it.
 
     `force` is "friction_force" or "normal_force".
     """
@@ -102,7 +102,7 @@ def find_gain(layout: Layout, columns: Sequence[DraftColumn], force: str) -> Gai
 
 
 def column_in_volts(columns: Sequence[DraftColumn], force: str) -> DraftColumn | None:
-    """Return the one column of volts that is named as a force is."""
+    """Return the only column in volts whose name means the given force; else None."""
     found = []
     for column in columns:
         name, unit, _ = bare_name(column)
@@ -115,7 +115,7 @@ def column_in_volts(columns: Sequence[DraftColumn], force: str) -> DraftColumn |
 def take_stated_missing(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> list[str]:
-    """Replace no-data heights by NaN, and return their text."""
+    """Replace heights equal to a stated no-data value by NaN; return such cells as text."""
     stated = [
         (v.text, v.number) for v in numeric_settings(layout, bare=True) if v.number == v.number
     ]

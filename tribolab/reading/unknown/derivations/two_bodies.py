@@ -1,4 +1,4 @@
-"""Two surfaces that both move: a ball and a disc, two rollers; they slide at the difference."""
+"""Two moving surfaces (ball and disc, two rollers), which slide at their speed difference."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from tribolab.units.spellings import plain_unit
 
 _SURFACE = "the speed of one of two surfaces"
 _SPEEDS = {"rotation_speed": "Hz", "sliding_velocity": "m/s"}
-_REST = 0.1  # of the fastest slip; slower is rest
+_REST = 0.1  # of the largest slip speed; below it, the surfaces do not slide
 _NUMBERED = (re.compile("1$"), re.compile("2$"))
 
 
 class Pair(NamedTuple):
-    """The columns of how fast both surfaces go, as linear speeds or as turns, and their names."""
+    """Speed columns of two surfaces (linear, or rotation if `turns`), and their name patterns."""
 
     columns: tuple[DraftColumn, DraftColumn]
     turns: bool
@@ -42,7 +42,7 @@ class Pair(NamedTuple):
 def find_surface_speeds(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> Pair | None:
-    """Return the two columns of how fast two surfaces go, where their names are those of bodies."""
+    """Return the two surface speed columns, if their names identify the two bodies; else None."""
     speeds = [(column, _speed_of(column)) for column in columns]
     for quantity in _SPEEDS:
         mine = [column for column, held in speeds if held == quantity]
@@ -57,7 +57,7 @@ def find_surface_speeds(
 
 
 def numbered_in_doubt(layout: Layout, pair: Pair | None) -> list[str]:
-    """Ask whether two numbered speeds are of two surfaces, unless the text speaks of two."""
+    """Ask whether numbered speeds belong to two surfaces, unless the text mentions two bodies."""
     twin = part_pattern("two_bodies")
     said = any(twin.search(normalise_label(text)) for text in layout.named_sentences)
     if pair is None or pair.bodies is not _NUMBERED or said:
@@ -75,7 +75,7 @@ def _are(bodies: tuple[re.Pattern[str], re.Pattern[str]], a: DraftColumn, b: Dra
 
 
 def _speed_of(column: DraftColumn) -> str:
-    """Return which speed a column's name and unit are of; "" if none, or one that was set."""
+    """Return the kind of speed that a column is by name and unit; "" if none or a set-point."""
     name, unit, _ = bare_name(column)
     if not column.label or role_of(name) in ("set", "extreme"):
         return ""
@@ -87,13 +87,13 @@ def _speed_of(column: DraftColumn) -> str:
 
 
 def exclude_surface_speeds(columns: Sequence[DraftColumn], pair: Pair | None) -> list[DraftColumn]:
-    """Return columns of surface speeds, which are not the sliding speed."""
+    """Return all columns, with those of surface speeds marked as not the sliding speed."""
     places = {column.place for column in pair.columns} if pair is not None else set()
     return [c.unused(_SURFACE, quantity=None) if c.place in places else c for c in columns]
 
 
 def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...]:
-    """Return the radii of two bodies that the text states; one of both where it states but one."""
+    """Return the stated radii of two bodies, or the only stated radius for both."""
     sizes = [v._replace(to="m") for v in values if v.unit and converts(v.unit, "m")]
     sizes = [
         v._replace(scale=0.5) if v.means("diameter") else v
@@ -114,10 +114,10 @@ def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...
 def second_is_faster(
     pair: Pair, radii: Sequence[Amount], numbers: np.ndarray, friction: DraftColumn | None
 ) -> bool:
-    """Whether friction is positive where the second surface is the faster one.
+    """Whether friction is positive when the second surface is the faster one.
 
-    The first value is the zero of the friction only if nothing slides there. File: a twin-disc
-    rig, recorded from within its test on.
+    The first value is taken as the zero of the friction only if nothing slides then. File: a
+    twin-disc rig, whose record starts during the test.
     """
     if friction is None:
         return False
@@ -132,9 +132,9 @@ def second_is_faster(
 
 
 def speed_symbol(column: DraftColumn, name: str) -> tuple[DraftColumn, str]:
-    """Return a column of a speed as a symbol, and that symbol as an angular or linear speed.
+    """Return a speed column for a formula, and the expression of its speed in the formula.
 
-    Turns count cycles; a formula wants radians.
+    Rotation in cycles is multiplied by 2 pi, as formulas need radians.
     """
     _, unit, say = bare_name(column)
     counted = reciprocal(plain_unit(unit or ""))
