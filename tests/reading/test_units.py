@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tribolab.core.errors import TribolabError, UnitError
+from tribolab.units import common_units as common
 from tribolab.units import conversion as units
 from tribolab.units.conversion import conversion, positive, registry, to_si
 from tribolab.units.grammar import parse_unit
@@ -45,8 +46,8 @@ def test_bad_units_say_what_and_where(text, words):
 
 
 def test_usual_units_are_what_the_units_library_says():
-    prefixed = [(f"{p}{u}", u) for p in units._PREFIXES for u in ("m", "m/s", "N", "Pa", "s", "V")]
-    for unit, si_unit in [*units._USUAL, *prefixed]:
+    prefixed = [(f"{p}{u}", u) for p in common._PREFIXES for u in ("m", "m/s", "N", "Pa", "s", "V")]
+    for unit, si_unit in [*common.CONVERSIONS, *prefixed]:
         ureg = units.registry()
         source, target = (
             ureg.Unit(units.pint_spelling(unit)),
@@ -60,11 +61,11 @@ def test_what_is_told_without_the_units_library_is_what_it_says():
     ureg = registry()
     for prefix in ("", "p", "n", "u", "m", "c", "k", "M", "G"):
         for unit in ("s", "m", "N", "Pa", "V", "m/s"):
-            for asked in units._ASKED:
-                if units._measures_another(prefix + unit, asked):
+            for asked in common._ASKED:
+                if common.measures_another(prefix + unit, asked):
                     target = ureg.Unit(units.pint_spelling(asked).replace(" ", "*"))
                     assert not ureg.Unit(prefix + unit).is_compatible_with(target), (unit, asked)
-    assert not units._measures_another("mN", "N") and units._measures_another("mN", "m")
+    assert not common.measures_another("mN", "N") and common.measures_another("mN", "m")
 
 
 def test_every_unit_in_the_dictionary_is_si():

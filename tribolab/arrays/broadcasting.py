@@ -70,7 +70,9 @@ first: tl.read('run.csv')
                     f"{name}: {count} runs are given, and {len(value)} datasets as "
                     f"{_name(function, key)}; give one for each run"
                 )
-        return [_call_each(function, given, own, len(args), number) for number in range(count)]
+        return [
+            _call_with_entry(function, given, own, len(args), number) for number in range(count)
+        ]
 
     return with_lists
 
@@ -113,7 +115,8 @@ def of_lists(*names: str, paired: str = "") -> Callable[[Callable[P, R]], OfList
     *names
         Arguments that may be lists; single values apply to all.
     paired
-        Another argument, whose list belongs to one call unless another argument is a list too.
+        Another argument: its list is split among the calls if one of `names` is a list, and else
+        passed as a whole.
 
     Examples
     --------
@@ -140,21 +143,21 @@ def of_lists(*names: str, paired: str = "") -> Callable[[Callable[P, R]], OfList
                 sizes = ", ".join(f"{count} for {name}" for name, count in counts.items())
                 raise AnalysisError(f"{function.__name__}: lists of one length are wanted: {sizes}")
             count = next(iter(counts.values()))
-            return [_call_each(function, given, own, 0, number) for number in range(count)]
+            return [_call_with_entry(function, given, own, 0, number) for number in range(count)]
 
         return with_lists
 
     return decorate
 
 
-def _call_each(
+def _call_with_entry(
     function: Callable[..., R],
     given: Mapping[Any, Any],
     own: Mapping[Any, Sequence[Any]],
     placed: int,
     number: int,
 ) -> R:
-    """Return the results of a function for each set of entries of the lists."""
+    """Return the result of a function for one entry, with this `number`, of each list."""
     mine = {key: own[key][number] if key in own else value for key, value in given.items()}
     places = [mine.pop(place) for place in range(placed)]
     return function(*places, **mine)

@@ -19,7 +19,7 @@ def pieces(
 ) -> Iterator[tuple[int, int]]:
     """Yield the first sample of each piece of a range, and the one after its last.
 
-    Their memory is returned after some pieces, and after the last.
+    The memory of the pieces is released after every few of them, and after the last.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def pieces(
     length
         Largest length of a piece; by default `PIECE` samples.
     block
-        Samples of a block, if the range counts blocks.
+        Samples per block, if `start` and `stop` count blocks.
 
     Yields
     ------
@@ -51,7 +51,7 @@ def pieces(
 
 
 def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Yield the first block of each piece of at least one block, and the one after its last.
+    """Yield pieces of whole blocks: the first block of each, and the one after its last.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def stretches(has_property: Callable[[int, int], np.ndarray], count: int) -> np.
     Parameters
     ----------
     has_property
-        Mask of a piece, from its first sample and its end.
+        Function from the first sample and the end of a piece to its mask.
     count
         Samples of the record.
 
@@ -196,7 +196,7 @@ def lowered(values: np.ndarray, by: float) -> np.ndarray:
 
 
 def running_total(values: np.ndarray, level: float = 0.0) -> np.ndarray:
-    """Return the cumulative sums of values above a level, starting with 0.
+    """Return the cumulative sum of values minus a level, starting with 0.
 
     Examples
     --------

@@ -65,8 +65,8 @@ def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.f
     Parameters
     ----------
     part
-        Returns the numbers of a piece, from its first sample and its end; there may be fewer than
-        samples.
+        Function from the first sample and the end of a piece to its values, of which there may be
+        fewer than samples.
     count
         Samples of the record.
 
@@ -156,7 +156,7 @@ def _bracketed_quantile(
 
 
 def _quantile_bracket(ordered: np.ndarray, below: int, known: int, share: float) -> _About | None:
-    """Return the values around a quantile if it is above a lower bound, else None."""
+    """Return the values around a quantile if `ordered`, above `below` more, has both."""
     rank = share * (known - 1)
     first = int(np.floor(rank))
     last = first if first == rank else first + 1

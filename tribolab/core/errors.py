@@ -18,11 +18,11 @@ class Cure:
     Parameters
     ----------
     notebook
-        Names functions and arguments of Python.
+        Advice for Python: names of functions and arguments.
     terminal
-        Names commands and their options.
+        Advice for the command line: names of commands and options.
     campaign
-        Names keys of the campaign file; also used in the report of a campaign.
+        Advice for a campaign file: names of its keys; also used in the report.
     """
 
     notebook: str = ""
@@ -43,7 +43,7 @@ class TribolabError(Exception):
     Parameters
     ----------
     what
-        The problem, or another error to which a place is added.
+        The problem, or another error, to which `where` is added.
     where
         The file, key or quantity.
     function

@@ -67,7 +67,8 @@ def new_path(old: str) -> str:
 def accept_old_paths() -> None:
     """Make the old import paths of moved modules work.
 
-    The finder is placed first, because the parent package of an old path has the new folder.
+    The finder is placed first: the usual finder would load the modules in the new folder of a moved
+    package a second time, under their old path.
     """
     if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
         sys.meta_path.insert(0, _MovedModules())

@@ -112,7 +112,7 @@ def join_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
     Parameters
     ----------
     products
-        Their attributes.
+        Attributes of each of these results.
 
     Examples
     --------

@@ -47,10 +47,9 @@ class ValidityLimit:
 LIMITS = {
     "film": ValidityLimit(
         "film thickness over the radius R",
-        # the gap of a cylinder exceeds the parabola's by 0.5 % where the film is twice as thick,
-        1e-2,
-        # 6 % at R/10 and twice as wide at R/2, where its own edge is reached, sqrt(2 R h) = R
-        0.5,
+        # where the film has doubled, at x = sqrt(2 R h), a cylinder is higher than the parabola:
+        1e-2,  # by 0.5 % here, and by 6 % at h = R/10
+        0.5,  # by a factor of 2, at the edge of the cylinder, x = R
         "the gap is taken as a parabola and the film as thin",
         "take lower speeds or a thinner liquid",
     ),
@@ -63,7 +62,7 @@ LIMITS = {
     ),
     "thickening": ValidityLimit(
         "rise of an oil's viscosity at the highest pressure, in its logarithm",
-        0.1,  # increase of drag in the middle of the contact; the film follows later
+        0.1,  # the drag in the middle of the contact rises by 10 %, the film thickness by less
         np.inf,  # warns only: the liquid may be water, which does not thicken under pressure
         "the viscosity is taken to be the same at every pressure, as between soft bodies",
         "take a smaller load or a softer body, or a theory of elastohydrodynamics between hard "
@@ -102,8 +101,8 @@ LIMITS = {
     "pressure": ValidityLimit(
         "contact pressure over the largest in the table of p(u)",
         1.0,
-        # at the table's end u is 1e-17 h_rms, and ~ exp(-k p^2) beyond: 1e-205 at four
-        # times that pressure p(u) still inverts to 1e-5; at five dp/du overflows, at 5.3 u is 0
+        # u is 1e-17 h_rms at the end of the table and falls as exp(-k p^2) beyond; at four times
+        # that pressure p(u) still inverts to 1e-5, at five dp/du overflows, at 5.3 u is 0
         4.0,
         "beyond it the roughness is pressed flat and p(u) is extrapolated",
         "take a smaller load, or smooth surfaces",

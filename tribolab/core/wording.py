@@ -6,13 +6,8 @@ import math
 import traceback
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tribolab.core.errors import TribolabError, brief, shown
-
-if TYPE_CHECKING:
-    pass
-
 
 MINUS = "\N{MINUS SIGN}"
 
@@ -202,7 +197,7 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 def explain(error: BaseException) -> tuple[str, str]:
     """Return the message of an error on one line, and the name of its class.
 
-    The message is worded for the records of a campaign; unexpected errors include their place.
+    The message is worded for the records of a campaign; unexpected errors include file and line.
     """
     name = type(error).__name__
     if isinstance(error, TribolabError):

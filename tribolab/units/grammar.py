@@ -3,7 +3,8 @@
     unit   = factor { ("*" | "/" | "." | " ") factor }
     factor = ( name | number | "(" unit ")" ) [ ("**" | "^") exponent | digits | "-" digits ]
 
-Products and quotients are evaluated from left to right, as in pint. Only the number ten has powers.
+Products and quotients are evaluated from left to right, as in pint. Of all numbers only 10 may have
+a power.
 """
 
 from __future__ import annotations
@@ -134,7 +135,7 @@ class _Reader:
         return Parsed(parsed.factor**power, {n: p * power for n, p in parsed.powers.items()})
 
     def power(self, of: str) -> float | None:
-        """Read a power: after a sign for it, or digits directly after a name, as in m2 and s-1."""
+        """Read a power: after ** or ^, or digits directly after a name, as in m2 and s-1."""
         signed = self.kind == "power"
         if signed:
             self.step()

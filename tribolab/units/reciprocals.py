@@ -2,7 +2,8 @@
 
 ``1/min`` of a rotation speed counts turns, ``1/s`` of a shear rate counts nothing, and ``1/s`` of
 an angular frequency is ambiguous. The quantity defines the meaning of a bare reciprocal
-(`tribolab.units.quantities`); if both are possible, an error asks for it.
+(`tribolab.units.quantities`); if both are possible, an error asks for the
+meaning.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ class ShiftEstimate(NamedTuple):
 
 
 def starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
-    """Whether starts at all speeds and those of fast strokes of a duration [s] agree."""
+    """Whether the shifts from all starts and from fast strokes agree; `stroke` in s."""
     sharp = (
         max(starts.uncertainty, onsets.uncertainty) < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
     )
@@ -47,7 +47,7 @@ def starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) ->
 
 
 def contradicted(ways: dict[str, Estimate], stroke: float) -> bool:
-    """Whether starts, confirmed by two methods, exclude the fit by the motion (stroke [s])."""
+    """Whether the fit by the motion is missing, imprecise, or contradicts the starts."""
     starts, motion = ways["starts"], ways.get("motion")
     if motion is None or motion.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
         return True
@@ -73,8 +73,8 @@ def confirmed(starts: Estimate, classes: Estimate, stroke: float) -> bool:
 def widened(starts: Estimate, other: Estimate) -> Estimate:
     """Increase the uncertainty of starts by half the difference from another method.
 
-    If friction follows the speed slowly, velocity classes are late, and starts may be; if the stage
-    sticks, a fit may be closer to the truth.
+    If friction follows the speed slowly, velocity classes are late, and starts may be late. If the
+    stage sticks, a fit may be closer to the truth.
     """
     apart = 0.5 * (starts.shift - other.shift)
     return starts._replace(uncertainty=float(np.hypot(starts.uncertainty, apart)))

@@ -38,7 +38,7 @@ class Basis:
         strokes = np.abs(np.diff(self._path[change]))
         self.longest = float(strokes.max())
         self.shortest = float(strokes[strokes > 0.01 * self.longest].min())
-        # slow starts have an imprecise time and different friction
+        # slow strokes are ignored: their start is imprecise and their friction different
         speed = np.abs(motion.velocity)
         fastest = np.maximum.reduceat(speed, change[:-1])
         fast = fastest > limits.MIN_SPEED_OF_STROKE.value * np.percentile(speed, 99.5)
@@ -57,7 +57,7 @@ class Basis:
 
     @cached_property
     def models(self) -> list[tuple[str, Array]]:
-        """Name and table (column, row) of each model: slack values, and force before motion."""
+        """Name and basis functions (function, row) of each model: slack values, force first."""
         table, models = Play(self._path), []
         for slack in (0.0, *SLACK_LENGTHS):
             driven = table.followed(0.5 * min(slack * self.longest, limits.MAX_SLACK.value))

@@ -34,7 +34,7 @@ class Candidate(NamedTuple):
     changes: int
 
     def beats(self, other: Candidate) -> bool:
-        """Whether this candidate is decisively more likely than another.
+        """Whether this shift is decisively more likely than another candidate.
 
         >>> Candidate(0.0, 0.01, 100.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
         True
@@ -52,10 +52,10 @@ class Candidate(NamedTuple):
         )
 
     def clears(self, other: Candidate) -> bool:
-        """Whether this candidate excludes another one.
+        """Whether this shift rules out another candidate.
 
-        It does if it is decisively more likely, or if the other one is worse although it has fewer
-        changes of motion within the force log.
+        It does if it is decisively more likely, or if the other one fits worse although it has
+        fewer changes of motion within the force log.
 
         >>> Candidate(0.0, 0.02, 200.0, 12).clears(Candidate(14.0, 0.05, 160.0, 10))
         True
@@ -66,7 +66,7 @@ class Candidate(NamedTuple):
         return bool(ends_tell or self.beats(other))
 
     def surpasses(self, other: Candidate) -> bool:
-        """Whether this candidate is much more likely than another (weaker than `beats`).
+        """Whether this shift is much more likely than another candidate (weaker than `beats`).
 
         >>> Candidate(0.0, 0.06, 130.0, 12).surpasses(Candidate(1.7, 0.16, 67.0, 12))
         True
@@ -78,13 +78,13 @@ class Candidate(NamedTuple):
         )
 
     def _compare(self, other: Candidate) -> tuple[float, float]:
-        """Return the ratio of unexplained shares, and the log likelihood ratio."""
+        """Return ratio of unexplained shares (other over this), and log likelihood ratio."""
         more = other.unexplained / max(self.unexplained, 1e-12)
         freedom = min(self.freedom, other.freedom)
         return more, 0.5 * freedom * float(np.log(max(more, 1e-12)))
 
     def outdoes(self, other: Candidate) -> bool:
-        """Whether this candidate explains more, with at least as many changes of motion.
+        """Whether this shift explains more than another, with at least as many changes of motion.
 
         >>> Candidate(0.0, 0.04, 90.0, 5).outdoes(Candidate(9.0, 0.12, 70.0, 5))
         True

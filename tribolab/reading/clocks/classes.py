@@ -25,8 +25,8 @@ from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
 _GRID_CELLS = 1 << 14  # cells of the coarse grid over the longer log
-_CLASSES_PER_DECADE = 3  # classes per decade
-_MAX_RIVALS = 8  # most other peaks
+_CLASSES_PER_DECADE = 3  # of speed
+_MAX_RIVALS = 8  # most rival shifts
 # share of a cell: tolerance for rounding at its edge
 _CELL_EDGE = 1e-6
 _CHANGES_PER_CLASS = 12  # ratio of changes to classes above which the FFT is used
@@ -41,7 +41,7 @@ class Coarse(NamedTuple):
 
 
 def motion_classes(velocity: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return classes of velocity, with rests by the motion before, and the direction (-1, 0, 1)."""
+    """Return velocity classes (rests by the motion before them) and directions (-1, 0, 1)."""
     classes = velocity_classes(velocity)
     way = np.sign(classes - _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value)
     return np.where(
@@ -132,9 +132,9 @@ def coarse_shift(
 def _sums_by_lag(
     sums: list[Array], classes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], list[Array], Iterator[tuple[Array, Array]]]:
-    """Return shifts [cells], sums of samples (lag), number and sum by class of a second grid.
+    """Return lags [cells]; at each lag the sums of all samples, and number and sum in each class.
 
-    Only shifts with enough overlap are searched.
+    Only lags with enough overlap of both logs are included.
     """
     wide, cells = len(classes), len(sums[0])
     lags = np.arange(-wide, cells)
@@ -144,7 +144,7 @@ def _sums_by_lag(
 
     number = piled[0][wide : wide + len(lags)] - piled[0][: len(lags)]
     enough = np.flatnonzero(number >= limits.MIN_OVERLAP.value * number.max())
-    begin = max(int(enough[0]) - 1, 0)  # with one lag too few on each side
+    begin = max(int(enough[0]) - 1, 0)  # with one lag of too little overlap on each side
     lags = lags[begin : int(enough[-1]) + 2]
 
     def sum_below(p: Array, first: int, last: int) -> Array:
@@ -171,7 +171,7 @@ def _sums_by_lag(
 def _correlated_classes(
     sums: list[Array], classes: NDArray[np.int64], lags: NDArray[np.int64]
 ) -> Iterator[tuple[Array, Array]]:
-    """Yield number and sum for each class (lag), by FFT."""
+    """Yield number and sum of the force samples in each class (lag), by FFT."""
     length = _power_of_two(len(sums[0]) + len(classes))
     count, total = (rfft(s, length) for s in sums)
     for k in np.unique(classes):
@@ -203,10 +203,7 @@ class Classes:
         )
 
     def _parts(self, shifts: Array) -> tuple[Array, Array, Array]:
-        """Return positions of the changes (shift, change), number and sum by class (shift, class).
-
-        Positions are counted in samples.
-        """
+        """Return changes [samples] (shift, change); number and sum by class (shift, class)."""
         at = np.interp(self._moments + shifts[:, None], self._time, self._edges[:-1] + 0.5)
         total = self._by_class(np.diff(np.interp(at, self._edges, self._sum)))
         return at, self._by_class(np.diff(at)), total
@@ -233,6 +230,14 @@ class Classes:
         whole = squares - total.sum(axis=1) ** 2 / np.maximum(at[:, -1] - at[:, 0], 1e-9)
         return _explained(number, total) / np.maximum(whole, 1e-12)
 
+    def refined(self, shift: float, around: float) -> float:
+        """Return the shift [s] near a coarse one at which the classes explain most of the force."""
+        while around > 0.2 * self.period:
+            shifts = shift + around * np.linspace(-1.0, 1.0, 33)
+            shift = float(shifts[np.argmax(self.explained(shifts))])
+            around /= 8.0
+        return shift
+
     def _by_class(self, values: Array) -> Array:
         """Sum values of intervals between changes by class (shift, class)."""
         rows, classes = len(values), int(self._classes.max()) + 1
@@ -248,7 +253,7 @@ class Classes:
         return ratio / classes * independent / max(1.0 - ratio, 1e-12)
 
     def uncertainty(self, shift: float) -> float:
-        """Return the distance at which the explained sum of squares drops significantly."""
+        """Return the change of shift [s] that lowers the explained sum of squares significantly."""
         residual = self._residual(shift)
         if not residual.size:
             return np.inf

@@ -205,12 +205,12 @@ def _interval(time: np.ndarray) -> float:
 
 
 def mended_time(time: np.ndarray, where: str, dialect: Dialect) -> Mended:
-    """Make time strictly increasing as the dialect states.
+    """Return strictly increasing times, repaired as the dialect states.
 
     Parameters
     ----------
     time
-        Time [s] (time), with joined parts.
+        Time [s] (time), after parts have been joined.
     where
         The file, for messages.
     dialect

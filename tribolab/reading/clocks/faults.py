@@ -1,9 +1,9 @@
-"""Faults of a clock, row by row: restarts, wraps, stray stamps, stops.
+"""Faults of a clock, row by row: restarts, wraps, stray time stamps, stops.
 
 A clock that falls back and continues from there restarts (or wraps, if it fell by the range of a
-counter). A fall within its own scatter is jitter. If a fall and a jump cancel each other, the
-stamps between them are stray, and the clock was continuous. Other rows that are not later than all
-before them in their part are stops or jitter.
+counter). A fall within the scatter of the time steps is jitter. If a fall and a jump cancel each
+other, the stamps between them are stray, and the clock was continuous. Other rows that are not
+later than all before them in their part are stops or jitter.
 """
 
 from __future__ import annotations
@@ -104,12 +104,12 @@ def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
 
 
 def rows_at_fault(time: np.ndarray, faults: Faults) -> np.ndarray:
-    """Return a mask of rows whose time is missing, stray, or not later than all before.
+    """Return a mask of the rows whose time is missing, stray, or not later than all times before.
 
     Parameters
     ----------
     time
-        Time [s] (time), with joined parts.
+        Time [s] (time), after parts have been joined.
     faults
         Faults of this clock.
     """
@@ -129,13 +129,13 @@ def _usual_and_spread(steps: np.ndarray) -> tuple[float, float]:
     if not rising.size:
         return 1.0, 0.0
     usual = float(np.median(rising, overwrite_input=True))
-    for first, last in pieces(0, rising.size):  # in any order
+    for first, last in pieces(0, rising.size):  # the median has changed their order
         rising[first:last] = np.abs(rising[first:last] - usual)
     return usual, float(np.median(rising, overwrite_input=True))
 
 
 class _Search:
-    """Search through the falls of a clock in order."""
+    """Classification of all backward jumps of a clock, from first to last."""
 
     def __init__(self, time: np.ndarray, wrap: float):
         self.time, self.wrap = time, wrap
@@ -163,7 +163,7 @@ class _Search:
             good = self.time[done:row][~self.astray[done:row]]
             self.top = max(self.top, float(good.max(initial=-np.inf)))
             done = row
-            if self.time[row] > self.top:  # back from stray stamps
+            if self.time[row] > self.top:  # the clock only returns from stray stamps ahead
                 continue
             if (stop := self._end_of_fall(row)) is not None:
                 self.astray[row:stop] = True
@@ -180,7 +180,7 @@ class _Search:
         return self.top - float(self.time[row])
 
     def _end_of_fall(self, row: int) -> int | None:
-        """Return the row at which a jump cancels a fall; None without one."""
+        """Return the row at which a forward jump cancels a fall; None without such a jump."""
         ahead = self.time[row : row + self.reach + 1]
         back = np.flatnonzero(ahead > self.top)
         if not back.size:
@@ -191,7 +191,7 @@ class _Search:
         return row + count if self._cancels(self._fall(row), jump, lag, count) else None
 
     def _start_of_jump(self, row: int) -> int | None:
-        """Return the first of the rows before a fall that had jumped ahead; else None."""
+        """Return the first row that had jumped ahead before a fall; None without such a jump."""
         begin = max(self.first, row - self.reach - 1)
         below = (self.time[begin:row] < self.time[row]) & ~self.astray[begin:row]
         below = np.flatnonzero(below)

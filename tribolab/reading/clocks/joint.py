@@ -2,16 +2,17 @@
 
 At a trial shift the force is a sum, linear in its amplitudes, of
 
-    functions of the distance since the last reversal: stops S_r(x) = x - play_r(x) with
-        lengths r on a grid (sticking is a stop, slack a difference of two, hysteresis a sum);
+    functions of the distance since the last reversal: stop operators S_r(x) = x - play_r(x) with
+        lengths r on a grid (one for sticking, a difference of two for slack, a sum for hysteresis);
     functions of the speed: sign(v) times hat functions of log |v|;
     inertia of the mass on the sensor: dv/dt;
     slow drift: hat functions of time.
 
-The residual as a function of the shift is its profile likelihood. If the motion log records the
-sample and not the stage, the force rises elastically before the log shows motion: in a second
-model the reversals of the force are ramps that end at the start of motion and last as long as the
-stage needs for the distance. The results of both models are weighted by their fit.
+The residual as a function of the shift gives the profile likelihood of the shift. If the motion
+log records the sample and not the stage, the force rises elastically before the log shows motion.
+In a second model the reversals of the force are therefore ramps that end at the start of motion and
+last as long as the stage needs to travel the length r. The results
+of both models are weighted by their fit.
 """
 
 from __future__ import annotations
@@ -25,16 +26,14 @@ from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import SLACK_LENGTHS, Basis
+from tribolab.reading.clocks.force_samples import DRIFT_FUNCTIONS, ForceSamples, force_samples
 
-_FITTED_SAMPLES = 2000  # force samples used in one fit
-_ROUNDING = 1e-14  # error of a difference of products, over the products
-_CANCELLATION = 1e-6  # relative size below which a difference of sums is computed directly
-_DRIFT_FUNCTIONS = 8  # most hat functions of time
+_ROUNDING = 1e-14  # relative rounding error of a difference of products
+_CANCELLATION = 1e-6  # relative residual below which it is summed over samples instead
 _POWER_RANGE = 2.0, 8.0  # exponent that weights models by their unexplained variance
 _POWER_PER_RESIDUAL = 0.01  # exponent per independent residual
 # prior probability that the force leads; all slack values share the rest equally
 _PRIOR_FORCE_LEADS = 0.5
-_MAX_EVENTS = 60
 _RIDGE_PENALTY = 1e-7
 _GRID_SHIFTS = 17  # shifts of the first grid
 _REFINED_SHIFTS = 13  # shifts of a refined grid, about one per standard error
@@ -59,7 +58,7 @@ class JointShift(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """Result of one model: shift [s], its error [s], and shares of residual and inertia.
+    """Result of one model: shift [s], its error [s], unexplained share of variance, inertia share.
 
     `freedom` is the number of independent residuals, `prior` the prior probability of the model.
     """
@@ -85,13 +84,13 @@ def shift_from_motion(
     basis
         Basis functions on the clock of the motion log.
     shift, span
-        Start and half width of the search [s]: at most half of a fast stroke, but at least `least`
-        [s].
+        Start and half width of the search [s]. The half width is limited to half of a fast stroke,
+        or to `least` [s] if that is longer.
 
     Returns
     -------
     JointShift or None
-        None if there are too few samples around the changes of motion, or nothing is explained.
+        None if there are too few samples around the changes of motion, or the fit is poor.
     """
     period = sampling(force_time, basis, shift)
     span = min(span, max(least, 0.5 * basis.stroke))
@@ -108,13 +107,13 @@ def shift_from_motion(
 
 
 def sampling(force_time: Array, basis: Basis, shift: float) -> float:
-    """Return the sampling interval [s] of both logs after starts of the motion, as one error."""
+    """Return the sampling interval [s] after starts of motion, both logs added in quadrature."""
     own, other = _interval(force_time, basis, shift), _interval(basis.time, basis, 0.0)
     return float(np.hypot(own, other))
 
 
 def _interval(time: Array, basis: Basis, shift: float) -> float:
-    """Return the sampling interval [s] after the starts of motion."""
+    """Return the median sampling interval [s] of a log after the starts of motion."""
     at = np.searchsorted(time, basis.time[basis.begins] + shift)
     at = np.clip(at[:, None] + np.arange(1, 12), 0, len(time) - 1)
     return float(median(np.diff(time[at], axis=1)))
@@ -123,8 +122,8 @@ def _interval(time: Array, basis: Basis, shift: float) -> float:
 def fit_jointly(
     force_time: Array, force: Array, basis: Basis, shift: float, span: float, finest: float
 ) -> list[Answer]:
-    """Return the result of each model; `finest` is the sampling interval [s] that limits it."""
-    first = _samples(force_time, force, basis, shift, span)
+    """Fit the force by each model, around a shift [s]; `finest` [s] limits the resolution."""
+    first = force_samples(force_time, force, basis, shift, span)
     models = []
     for name, table in basis.models:
         answer = _shift_of_model(force_time, force, basis, table, shift, span, finest, first)
@@ -135,7 +134,7 @@ def fit_jointly(
     shifts = np.array([answer[0] for _, _, answer in models])
     # the same samples for all models, so that residuals are comparable
     half = 0.5 * float(np.ptp(shifts)) + finest
-    used = _samples(force_time, force, basis, 0.5 * float(shifts.min() + shifts.max()), half)
+    used = force_samples(force_time, force, basis, 0.5 * float(shifts.min() + shifts.max()), half)
     if not used.force.size:  # the shifts are too far apart for common samples
         return []
     answers = []
@@ -153,10 +152,10 @@ def fit_jointly(
 
 
 def mixture(answers: list[Answer]) -> tuple[float, float]:
-    """Return mean and standard deviation of all models' results, weighted by their fit."""
+    """Return mean and standard deviation [s] of the shifts of all models, weighted by their fit."""
     unexplained = np.array([answer.unexplained for answer in answers])
     best = int(np.argmin(unexplained))
-    # uncorrelated residuals are noise; otherwise no model is quite right
+    # if residuals are correlated, no model is exact, and poorer fits keep some weight
     power = np.clip(_POWER_PER_RESIDUAL * answers[best].freedom, *_POWER_RANGE)
     weight = np.array([answer.prior for answer in answers])
     weight *= (unexplained / unexplained[best]) ** -power
@@ -177,13 +176,13 @@ def _shift_of_model(
     shift: float,
     span: float,
     finest: float,
-    samples: _Samples,
+    samples: ForceSamples,
 ) -> tuple[float, float] | None:
-    """Return shift and error of one model by successively narrower grids; None if it diverges."""
+    """Return shift and error [s] of one model, from ever narrower grids; None if it diverges."""
     at, half = shift, span
     for narrowed in range(12):
         if narrowed:
-            samples = _samples(force_time, force, basis, at, half)
+            samples = force_samples(force_time, force, basis, at, half)
         if len(samples.time) < 3 * len(table) + 30:
             return None
         shifts = at + half * np.linspace(-1.0, 1.0, _REFINED_SHIFTS if narrowed else _GRID_SHIFTS)
@@ -202,70 +201,10 @@ def _shift_of_model(
     return None if abs(mean - shift) > 1.2 * span else (mean, error)
 
 
-def _samples_near_changes(
-    force_time: Array, basis: Basis, shift: float, half: float
-) -> NDArray[np.int64]:
-    """Return indices of force samples around the changes of motion, denser near them."""
-    events = basis.time[basis.events] + shift
-    inside = (events > force_time[0] + half) & (events < force_time[-1] - half)
-    inside[inside] = np.arange(inside.sum()) % (1 + inside.sum() // _MAX_EVENTS) == 0
-    events, around = events[inside], basis.around[inside] + shift
-    if not len(events):
-        return np.zeros(0, dtype=np.int64)
-    each = max(20, _FITTED_SAMPLES // len(events)) // 2  # before and after each
-    k = np.searchsorted(force_time, events)
-    a, b = np.searchsorted(force_time, around.T)
-    count = np.stack([b - k, k - a])  # (after or before, event)
-    # evenly within the span, then increasingly sparse
-    flat = np.searchsorted(force_time, events + 2.0 * half) - k
-    scale = np.maximum(np.minimum(flat, count), 4)
-    u = np.linspace(0.0, np.arcsinh(np.maximum(count, 1) / scale), each, axis=-1)
-    thinned, all_of_few = (scale[:, :, None] * np.sinh(u)).astype(np.int64), np.arange(each)
-    many = (count > each)[:, :, None]
-    places = k[:, None] + np.array([1, -1])[:, None, None] * np.where(many, thinned, all_of_few)
-    chosen = _without_repeats(np.sort(places[many | (all_of_few < count[:, :, None])]))
-    good = (chosen >= 0) & (chosen < len(force_time))
-    chosen = chosen[good]
-    first = max(basis.time[0] + shift + half, force_time[0])
-    last = min(basis.time[-1] + shift - half, force_time[-1])
-    return chosen[(force_time[chosen] >= first) & (force_time[chosen] <= last)]
-
-
-def _without_repeats(increasing: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return a sorted array without repeats, faster than `numpy.unique`."""
-    if not len(increasing):
-        return increasing
-    return increasing[np.diff(increasing, prepend=-1 - abs(int(increasing[0]))) != 0]
-
-
-class _Samples(NamedTuple):
-    """Samples of the force around the changes of motion, without slow drift."""
-
-    time: Array
-    force: Array
-    drift: Array  # (sample, function), orthonormal
-    both: Array  # drift and force, (function, sample)
-
-
-def _samples(force_time: Array, force: Array, basis: Basis, shift: float, half: float) -> _Samples:
-    used = _samples_near_changes(force_time, basis, shift, half)
-    time, force = force_time[used], force[used]
-    if not len(time):
-        return _Samples(
-            time, force, np.zeros((0, _DRIFT_FUNCTIONS)), np.zeros((_DRIFT_FUNCTIONS + 1, 0))
-        )
-    knots = np.linspace(time[0], time[-1], _DRIFT_FUNCTIONS)
-    drift, _ = np.linalg.qr(
-        np.stack([np.interp(time, knots, hat) for hat in np.eye(_DRIFT_FUNCTIONS)], 1)
-    )
-    force = force - drift @ (drift.T @ force)
-    return _Samples(time, force, drift, np.concatenate([drift.T, force[None]]))
-
-
 class _Fit:
-    """Linear fit of the force at trial shifts by a model's table (column, motion row)."""
+    """Linear fit of the force by the basis functions of one model, at several trial shifts."""
 
-    def __init__(self, samples: _Samples, motion_time: Array, table: Array, shifts: Array):
+    def __init__(self, samples: ForceSamples, motion_time: Array, table: Array, shifts: Array):
         self.samples, self.shifts = samples, shifts
         self.whole = float(samples.force @ samples.force)
         rows = _rows_between(motion_time, samples.time - shifts.max(), samples.time - shifts.min())
@@ -276,7 +215,7 @@ class _Fit:
         self._columns, self._begin = np.empty(shape), np.empty(shape)
 
     def columns(self, shift: float) -> Array:
-        """Return the table of basis functions at the samples' times.
+        """Return the basis functions at the times of the samples (sample, function).
 
         The next call overwrites it: for hundreds of calls per run, new memory would take half of
         the time.
@@ -294,7 +233,7 @@ class _Fit:
         return self._columns
 
     def squares(self) -> tuple[Array, Array, Array]:
-        """Return residual sums of squares, amplitudes, and shares of inertia (shift)."""
+        """Return residual sum of squares, amplitudes and share of inertia at each shift."""
         normals, rights, whole = [], [], []
         for shift in self.shifts:
             columns = self.columns(shift)
@@ -307,7 +246,7 @@ class _Fit:
         normal, right = np.stack(normals), np.stack(rights)[:, :, None]
         own = np.einsum("sii->si", normal)
         ridge = _RIDGE_PENALTY * own + 1e-12 * own.sum(axis=1, keepdims=True)
-        # what is left of motion that the drift explains is rounding
+        # a column that the drift explains leaves only rounding errors
         ridge = np.maximum(ridge, _ROUNDING * np.stack(whole) + np.finfo(float).tiny)
         ridged = normal + ridge[:, :, None] * np.eye(own.shape[1])
         amplitudes = np.linalg.solve(ridged, right)
@@ -328,13 +267,13 @@ class _Fit:
         return left
 
     def profile(self) -> tuple[Array, float, float, float]:
-        """Return log likelihoods (shift), and residual, inertia and freedom of the best."""
+        """Return log likelihoods (shift); of the best fit residual, inertia and freedom."""
         squares, amplitudes, inertia = self.squares()
         best = int(np.argmin(squares))
         residual = self.residual(self.shifts[best], amplitudes[best])
         alike = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
         hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
-        freedom = max(len(residual) - amplitudes.shape[1] - _DRIFT_FUNCTIONS, 1) / hanging
+        freedom = max(len(residual) - amplitudes.shape[1] - DRIFT_FUNCTIONS, 1) / hanging
         squares = np.maximum(squares, 1e-12 * self.whole)
         return (
             -0.5 * freedom * np.log(squares),
@@ -345,7 +284,7 @@ class _Fit:
 
 
 def _rows_between(motion_time: Array, first: Array, last: Array) -> NDArray[np.int64]:
-    """Return the rows of a motion log in increasing time intervals, each row once."""
+    """Return the rows of a motion log needed to interpolate within time intervals, each once."""
     ends = len(motion_time) - 2
     low = np.clip(np.searchsorted(motion_time, first) - 1, 0, ends)
     high = np.clip(np.searchsorted(motion_time, last) - 1, 0, ends) + 1

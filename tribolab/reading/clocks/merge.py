@@ -31,15 +31,15 @@ def merge(run: Signals, motion: Signals, clock_shift: float | None = None) -> Si
     -------
     Signals
         The part of the run that both logs cover, with the companion's signals linearly interpolated
-        (set-points and step numbers: held). ``clock_shift_s``, its source ("estimated", "given", or
-        "none" if the signals do not determine it) and its uncertainty are attributes. An estimated
-        shift applies to the middle of the companion log; if the signals show that one clock is
-        faster, ``clock_rate`` is not zero, and force clock = motion clock + ``clock_shift_s`` +
+        (set-points and step numbers keep their last value). ``clock_shift_s``, its source
+        ("estimated", "given" or "none") and its uncertainty are attributes. An estimated shift
+        applies to the middle of the companion log; if the signals show that one clock is faster,
+        ``clock_rate`` is not zero, and force clock = motion clock + ``clock_shift_s`` +
         ``clock_rate`` (motion clock - its middle).
 
-        If the signals do not determine it, the source is "none", ``clock_shift_refused`` is the
-        reason, and ``clock_shift_s`` is a guess. ``clock_shift_ways`` contains the result of each
-        method.
+        The source is "none" if the signals do not determine the shift. Then ``clock_shift_s`` is a
+        guess, and ``clock_shift_refused`` is the reason. ``clock_shift_ways`` contains the result
+        of each method.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def _shift(
 
 
 def _gap(apart: float, force_clock: np.ndarray, motion_clock: np.ndarray) -> float:
-    """Return the seconds between the end of one log and the start of the other, by their dates."""
+    """Return the time [s] between the end of one log and the start of the other, by their dates."""
     return max(apart - float(np.ptp(force_clock)), -apart - float(np.ptp(motion_clock)), 0.0)
 
 
@@ -145,7 +145,7 @@ def _velocity(motion: Signals, clock: np.ndarray) -> np.ndarray | None:
 
 
 def _start_difference(run: Signals, motion: Signals) -> float | None:
-    """Return the seconds from the start of the run to that of the companion, if both are stated."""
+    """Return the time [s] from the start of the run to that of the companion; None if unknown."""
     try:
         begins = [dt.datetime.fromisoformat(data.attrs["recorded_at"]) for data in (run, motion)]
         return (begins[1] - begins[0]).total_seconds()

@@ -31,7 +31,7 @@ class Motion(NamedTuple):
 
 
 def clean_motion(time: Array, velocity: Array) -> Motion:
-    """Separate motion from rest.
+    """Return the velocity and direction of a motion log, both zero at rest.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def _fill_between_counts(time: Array, velocity: Array, path: Array) -> Array:
     Only evenly spaced counts in one direction are joined: vibration at rest reverses direction, and
     the rest between two strokes is longer than the time between two counts.
     """
-    way = _directions(velocity, 0.0)  # without rounding errors
+    way = _directions(velocity, 0.0)  # rounding errors count as rest
     edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
     first, last = edges[:-1][way[edges[:-1]] != 0], edges[1:][way[edges[:-1]] != 0]
     if len(first) < limits.MIN_COUNTS_OF_STROKE.value:
@@ -85,7 +85,7 @@ def _fill_between_counts(time: Array, velocity: Array, path: Array) -> Array:
     usual = np.minimum(np.append(gap[1:], np.inf), np.concatenate([[np.inf], gap[:-1]]))
     bridged = (way[first[1:]] == way[first[:-1]]) & (first[1:] > last[:-1])
     bridged &= gap < limits.MAX_INTERVAL_OF_COUNTS.value * usual
-    # at least as many counts in a row as in a stroke
+    # fewer counts in a row are not a stroke
     number = np.concatenate([[0], np.cumsum(~bridged)])
     bridged &= np.bincount(number)[number[1:]] >= limits.MIN_COUNTS_OF_STROKE.value
     out, between = velocity.copy(), np.append(bridged, False)
@@ -112,7 +112,7 @@ def _averaged(time: Array, path: Array, half: int) -> Array:
 
 
 def _noise(velocity: Array, apart: int) -> float:
-    """Return the noise at rest, from second differences of values without common samples."""
+    """Return the noise at rest [m/s], from second differences of every `apart`-th velocity."""
     second = np.diff(velocity[:: max(apart, 1)], 2)
     blocks = len(second) // _NOISE_BLOCK
     if blocks < 4:
@@ -124,7 +124,7 @@ def _noise(velocity: Array, apart: int) -> float:
 
 
 def _directions(velocity: Array, noise: float) -> NDArray[np.int64]:
-    """Return the sign of intervals well above the noise, each with its full extent."""
+    """Return the direction (-1, 1) of intervals that rise well above the noise; 0 elsewhere."""
     speed = np.abs(velocity)
     least = 10.0**-limits.DECADES_TO_REST.value * float(speed.max())
     above = speed > max(noise, least)
@@ -142,7 +142,7 @@ def _turns(way: NDArray[np.int64]) -> int:
 
 
 def _without_short_motion(path: Array, way: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Treat motion without displacement as rest."""
+    """Return the directions, with 0 also for intervals of negligible displacement."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
     moved = np.abs(path[np.minimum(edges[1:], len(path) - 1)] - path[edges[:-1]])
     short = moved < limits.MIN_DISTANCE_OF_MOTION.value * moved.max(initial=0.0)

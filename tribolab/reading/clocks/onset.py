@@ -6,7 +6,7 @@ velocity only, force samples seem to be late. So the start of each stroke is fit
     F(t) = a + b exp(-s(t - shift) / d),
 
 with s the distance since the start of the stroke (0 before it), a and b free, and d the best of a
-few distances. All strokes share the shift, with the log likelihood
+few distances. All strokes share the shift, with the negative log likelihood
 
     L(shift) = sum_i n_i / 2 log RSS_i(shift).
 """
@@ -21,11 +21,11 @@ from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
-_COMPARED_PART = 0.05  # share of a stroke's length that is used, with equal length before it
+_COMPARED_PART = 0.05  # share of a stroke's length that is fitted, with equal time before it
 _STICK_DISTANCES = 17  # number of distances d, each twice the one before
 _LONGEST_STICK = 1e-6 * 2.0 ** (_STICK_DISTANCES - 1)  # d, in units of the stroke length
 _SEARCHED_TIME = 0.3  # share of the duration of fast strokes (or rests) that is searched
-_MAX_SAMPLES = 5000  # most samples of one start; slower ones are not informative
+_MAX_SAMPLES = 5000  # most samples of one start; longer, slow starts are not informative
 
 
 class Sharpened(NamedTuple):
@@ -37,7 +37,7 @@ class Sharpened(NamedTuple):
 
 
 class Onset(NamedTuple):
-    """Start of one stroke: force samples, and distance over the motion clock."""
+    """Start of one stroke: force samples, and distance [m] slid by the times of the motion log."""
 
     time: Array
     force: Array
@@ -65,12 +65,12 @@ def refine_by_onsets(
     shift
         First estimate: motion clock + shift = force clock [s].
     period
-        Sampling interval [s] of the fastest region, of which half limits the resolution.
+        Sampling interval [s] where it is shortest; half of it limits the resolution.
 
     Returns
     -------
     Sharpened or None
-        None if no start of a stroke is found, or the shift is far from the first estimate.
+        None if no start of a stroke is found, or they show no clear shift near the first estimate.
     """
     onsets, half_width = _onsets(force_time, force, motion_time, velocity, shift)
     if not onsets:
@@ -142,7 +142,7 @@ def _onsets(
 
 
 def _misfit(onsets: list[Onset], shifts: Array) -> Array:
-    """Return L at each shift."""
+    """Return the negative log likelihood L of each shift."""
     total = np.zeros(len(shifts))
     for onset in onsets:
         way = np.interp(onset.time - shifts[:, None], onset.motion_time, onset.distance)

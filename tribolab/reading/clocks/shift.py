@@ -3,13 +3,13 @@
 Several methods determine it, each with its own error:
 
     classes
-        explained variance of the force by classes of velocity (`clocks.classes`): robust, late;
+        explained variance of the force by classes of velocity (`clocks.classes`): robust, but late;
     starts
         first change of the force at each start of motion (`clocks.starts`), refined
         by the starts of fast strokes (`tribolab.reading.clocks.onset`);
     motion
         one fit of the force by distance, speed and acceleration, with slack or sticking before
-        the motion (`tribolab.reading.clocks.joint`): slow, so only made unless the starts of all
+        the motion (`tribolab.reading.clocks.joint`): slow, so it is skipped if the starts of all
         strokes and those of the fast ones agree within one standard error.
 
 Effects that no method can separate (sticking, slack) are in the uncertainty. The shift is refused
@@ -38,6 +38,7 @@ from tribolab.reading.clocks.agreement import (
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.candidate_shifts import Candidate, candidates, likeliest
 from tribolab.reading.clocks.classes import Classes, coarse_shift, motion_classes
+from tribolab.reading.clocks.doubts import doubt_about_shift, doubt_about_starts
 from tribolab.reading.clocks.joint import shift_from_motion
 from tribolab.reading.clocks.motion import Motion, clean_motion
 from tribolab.reading.clocks.onset import refine_by_onsets
@@ -66,7 +67,7 @@ def estimate_clock_shift(
     expected
         Shift [s] that is preferred if several explain the force equally well.
     dated
-        Whether `expected` is known, from the dates in both logs.
+        Whether `expected` was computed from the dates in both logs.
 
     Returns
     -------
@@ -110,7 +111,7 @@ class _Search:
         _require(self.classes.min() != self.classes.max())
         self.force = (force - force.mean()) / force.std()
         self.basis = Basis(motion_time, self.motion)
-        _require(len(self.basis.begins))  # else moving from the first to the last sample
+        _require(len(self.basis.begins))  # without a start, the whole log is motion
         self.fit = Classes(self.force_time, self.force, motion_time, self.classes)
         # strokes of very different speeds are not interchangeable
         self.wide = _has_different_speeds(self.motion, self.way)
@@ -118,7 +119,7 @@ class _Search:
         self.ways: dict[str, Estimate] = {}
 
     def search_by_classes(self, expected: float, dated: bool) -> None:
-        """Find the shift by velocity classes, of several the likeliest."""
+        """Find the likeliest shift by velocity classes."""
         apart = limits.MIN_DISTANCE_OF_SHIFTS.value * self.basis.stroke
         coarse = coarse_shift(
             self.force_time, self.force, self.motion_time, self.classes, expected, apart
@@ -132,10 +133,10 @@ class _Search:
                 shifts = shifts[np.abs(shifts - expected) < limits.MAX_ERROR_OF_DATES.value]
             self.may = candidates(self.force_time, self.force, self.basis, shifts)
         self.chosen = likeliest(self.may)
-        shift = _refined(self.fit, self.chosen.shift, coarse.half)
+        shift = self.fit.refined(self.chosen.shift, coarse.half)
         significance = self.fit.significance(shift)
         _require(significance >= limits.MIN_F_RATIO_WITH_FIT.value)
-        # any sequence of classes explains a drift, but no shift fits it precisely
+        # classes can also explain a drift of the force, but then the shift is imprecise
         self.first = Estimate(shift, self.fit.uncertainty(shift))
         duration = float(np.ptp(self.motion_time)) / len(np.unique(self.classes))
         self.sharp = limits.MAX_UNCERTAINTY_OF_SHIFT.value * duration
@@ -165,14 +166,14 @@ class _Search:
             self.agree = apart <= limits.MAX_ERRORS_OF_AGREEMENT.value * estimate.uncertainty
             vaguer = self.agree and self.onsets.uncertainty > estimate.uncertainty
             estimate = estimate if self.seen is not None and vaguer else self.onsets
-        # slack or sticking would delay slow starts more, which only the first method uses
+        # only the first method uses slow starts, which slack or sticking would delay more
         twice = self.wide and not self.weak and self.seen is not None
         twice = twice and self.onsets is not self.starts
         self.twice = twice and starts_agree(self.starts, self.onsets, self.basis.stroke)
         apart = abs(self.onsets.shift - self.starts.shift)
         self.settled = self.twice and apart <= self.starts.uncertainty
         _require(not self.vague or self.twice)
-        # starts with a large error were searched at a wrong position
+        # starts with a large error were searched around a wrong shift
         if not self.twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
             repeated = self._by_onsets(ShiftEstimate(shift, uncertainty, ratio))
             estimate = repeated if repeated.uncertainty < estimate.uncertainty else estimate
@@ -181,7 +182,7 @@ class _Search:
         self.estimate = estimate
 
     def _seen_starts(self, ratio: float) -> StartShift | None:
-        """Return the shift by all starts, where the classes explain enough of the force."""
+        """Return the shift by all starts, among shifts at which classes explain the force well."""
         unexplained = min(
             limits.MAX_MISFIT_OF_STARTS.value * (1.0 - ratio) + limits.ROUNDING_OF_VARIANCE.value,
             1.0 - limits.MIN_EXPLAINED_OF_STARTS.value * ratio,
@@ -205,7 +206,7 @@ class _Search:
         if onsets is None:
             return estimate
         apart = abs(onsets.shift - estimate.shift)
-        # the shift is known at the fast strokes; elsewhere the clock rates add uncertainty
+        # measured at the fast strokes; until the middle of the log the clock rate adds uncertainty
         away = limits.CLOCK_RATE_ERROR.value * (onsets.time - self.middle)
         error = float(np.hypot(onsets.uncertainty, away))
         if apart > 3.0 * estimate.uncertainty:  # the methods disagree: neither is trusted more
@@ -221,7 +222,9 @@ class _Search:
         """Fit the force with all effects of motion, close to the shift found from the starts."""
         estimate = self.estimate
         durations = np.diff(self.motion_time[changes(self.way)])
-        self.stroke = float(median(durations[durations > 0.1 * durations.max()]))  # or rest
+        self.stroke = float(
+            median(durations[durations > 0.1 * durations.max()])
+        )  # of strokes and rests
         least = 5.0 * estimate.uncertainty
         inside = min(0.4 * self.stroke, 0.8 * float(durations[[0, -1]].min()))
         near = min(self.span, max(least, inside))
@@ -242,7 +245,7 @@ class _Search:
         _require(not self.weak or self.placed or apart <= 0.5 * self.sharp)
         self.stroke = joint.stroke
         self.sharp_fit = joint.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * self.stroke
-        # two methods contradict the onsets
+        # the starts at all speeds and the fit contradict the onsets of fast strokes
         if (
             self.sharp_fit
             and self.seen
@@ -268,13 +271,15 @@ class _Search:
         if self.wide and not self.twice and far:
             shifts = np.array([estimate.shift, *self.coarse.rivals])
             may = candidates(self.force_time, self.force, self.basis, shifts)
-            return estimate._replace(refused=_doubt_about_starts(may, self.stroke))
+            return estimate._replace(refused=doubt_about_starts(may, self.stroke))
         rivals = [rival for rival in self.may if rival is not self.chosen]
-        doubt = _doubt(estimate, self.fit, self.coarse.half, self.stroke, self.chosen, rivals)
+        doubt = doubt_about_shift(
+            estimate, self.fit, self.coarse.half, self.stroke, self.chosen, rivals
+        )
         return estimate._replace(refused=doubt)
 
     def _two_methods(self) -> tuple[Estimate, float] | None:
-        """Return a shift that two methods support, and its least error over a stroke's duration."""
+        """Return a shift that two methods support, and its least error as a share of a stroke."""
         ways, stroke = self.ways, self.stroke
         starts, motion, classes = ways.get("starts"), ways.get("motion"), self.first
         sharp = limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
@@ -299,20 +304,9 @@ class _Search:
 
 
 def _require(condition: object) -> None:
-    """Raise unless the force determines the shift so far."""
+    """Raise if a condition for determining the shift is not met."""
     if not condition:
         raise _UndeterminedError
-
-
-def _doubt_about_starts(may: list[Candidate], stroke: float) -> str:
-    """Return why a shift moved far from the velocity classes by the starts may be wrong."""
-    for rival in may[1:]:
-        if rival.outdoes(may[0]) and abs(rival.shift - may[0].shift) > 0.5 * stroke:
-            return (
-                f"the slow strokes do not tell whether they are seen: {may[0].shift:.4g} s by the "
-                f"starts, but {rival.shift:.4g} s explains more"
-            )
-    return ""
 
 
 def _has_different_speeds(motion: Motion, way: NDArray[np.int64]) -> bool:
@@ -320,54 +314,3 @@ def _has_different_speeds(motion: Motion, way: NDArray[np.int64]) -> bool:
     change = changes(way)[:-1]
     fastest = np.maximum.reduceat(np.abs(motion.velocity), change)[way[change] != 0]
     return bool(fastest.max() > limits.MAX_SPEED_RATIO.value * fastest.min())
-
-
-def _refined(fit: Classes, shift: float, around: float) -> float:
-    """Return the shift near a coarse one at which the classes explain most."""
-    while around > 0.2 * fit.period:
-        shifts = shift + around * np.linspace(-1.0, 1.0, 33)
-        shift = float(shifts[np.argmax(fit.explained(shifts))])
-        around /= 8.0
-    return shift
-
-
-def _doubt(
-    estimate: ShiftEstimate,
-    fit: Classes,
-    half: float,
-    stroke: float,
-    chosen: Candidate,
-    rivals: list[Candidate],
-) -> str:
-    """Return why a shift is unreliable, "" if it is not; strokes last `stroke` [s]."""
-    if (
-        estimate.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
-        and "motion" in estimate.ways
-    ):
-        text = ", ".join(f"{name} {way.shift:.4g} s" for name, way in estimate.ways.items())
-        return f"the ways to tell it disagree: {text}"
-    if estimate.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
-        return f"no way tells it sharply: {estimate.shift:.4g} s to {estimate.uncertainty:.2g} s"
-    left = (
-        limits.MAX_MISFIT_OF_RIVAL.value * (1.0 - estimate.explained)
-        + limits.ROUNDING_OF_VARIANCE.value
-    )
-    for rival in rivals:
-        if chosen.clears(rival):
-            continue
-        at = _refined(fit, rival.shift, half)
-        ratio = fit.ratio(at)
-        as_good = (
-            1.0 - ratio < left and ratio > limits.MIN_EXPLAINED_OF_RIVAL.value * estimate.explained
-        )
-        # a fit that explains far less than the classes does not contradict them
-        fitted = (
-            chosen.unexplained
-            < limits.MAX_MISFIT_OF_FIT.value * (1.0 - estimate.explained)
-            + limits.ROUNDING_OF_VARIANCE.value
-        )
-        fitted &= not np.isnan(rival.unexplained)
-        as_good |= fitted and not chosen.surpasses(rival)
-        if abs(at - estimate.shift) > 0.5 * stroke and as_good:
-            return f"the motion repeats: {estimate.shift:.4g} s and {at:.4g} s do equally well"
-    return ""

@@ -45,7 +45,7 @@ class _Start(NamedTuple):
     time: float
     before: float
     after: float
-    few: float  # s, duration of some force samples
+    few: float  # s, time in which the shortest length is slid
     sampling: float  # s, resolution of the two logs
 
 
@@ -76,7 +76,7 @@ class Logs:
         self._curves: dict[_Start, _Curve] = {}
 
     def slid(self, start: _Start, since: Array) -> Array:
-        """Return the distance [m] since the start, at times since then."""
+        """Return the distance [m] slid at times `since` [s] after a start."""
         return np.maximum(self._path(start.time + since) - self._curve(start).begin, 0.0)
 
     def _curve(self, start: _Start) -> _Curve:
@@ -90,7 +90,7 @@ class Logs:
         return self._curves[start]
 
     def _path(self, time: Array) -> Array:
-        """Return the path [m]; with linear velocity between samples, it is a parabola."""
+        """Return the path [m] at given times, with velocity interpolated linearly."""
         time = np.clip(time, self.motion_time[0], self.motion_time[-1])
         # searched only in the part that is needed
         ends = np.searchsorted(self.motion_time, [time.min(), time.max()], "right")
@@ -125,7 +125,7 @@ def _integral(time: Array, values: Array) -> Array:
 
 
 def changes(way: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the first samples of rests and strokes, and the last sample."""
+    """Return the index of the first sample of each rest and stroke, and of the last sample."""
     return np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
 
 
@@ -142,7 +142,7 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
     ):
         begin = float(logs.motion_time[first - 1])
         at = int(np.searchsorted(logs.force_time, begin + shift))
-        # at some distance, as the shift is not yet known
+        # not right at the start, as the shift is not yet known
         after = np.diff(logs.force_time[at + 20 : at + 80])
         ahead = np.diff(logs.force_time[max(at - 12, 0) : max(at - 1, 0)])
         if len(after) < 20 or len(ahead) < 5:
@@ -174,11 +174,11 @@ def shift_from_starts(
     shift, span
         Start and half width of the search [s].
     allowed
-        Function that tests whether shifts [s] are otherwise possible; `shift` itself must be.
+        Function that returns a mask of the shifts [s] to be tried; it must allow `shift`.
 
     Returns
     -------
-    ToldByStarts or None
+    StartShift or None
         None if no start determines it.
     """
     for width in (span, 0.5 * span):  # the samples around a start depend on the shift
@@ -198,13 +198,13 @@ def shift_from_starts(
         offsets = half * np.linspace(-1.0, 1.0, 41)
         for k, start in enumerate(starts):
             moments, error = _shift_of_start(logs, start, centre[k] + offsets)
-            # an uninformative start gives 0.58 of the half width; a maximum at the end is cut off
+            # an uninformative start has an error of 0.58 half; near its ends the grid cuts a peak
             if error < 0.4 * half and abs(moments - centre[k]) < 0.7 * half:
                 seen[:, k] = moments, error
         found = np.isfinite(seen[1])
         if not found.any():
             return None
-        # no resolution between samples
+        # no start is known better than the sampling
         errors = np.hypot(seen[1], sampling)
         fit = _combined(since[found], seen[0][found], errors[found], sampling.min())
         if step < sampling.min():
@@ -224,7 +224,7 @@ def _best_common_shift(logs: Logs, starts: list[_Start], shifts: Array) -> float
         means = np.diff(impulse, axis=1) / np.diff(edges)
         means -= means.mean(axis=1, keepdims=True)
         residual = means - (means @ basis) @ basis.T
-        # relative to the local variance, as otherwise the quietest place would fit best
+        # relative to the local variance, as otherwise the quietest interval would fit best
         variance = np.maximum((means**2).sum(axis=1), 1e-30)
         total += np.logaddexp(
             _likelihood(residual, variance, basis.shape[1]), -limits.MAX_LIKELIHOOD_OF_START.value
@@ -243,7 +243,7 @@ def _shift_of_start(logs: Logs, start: _Start, shifts: Array) -> tuple[float, fl
     if len(time) < shapes.shape[1] + 8:
         return float(shifts.mean()), np.inf
     normal = shapes @ np.swapaxes(shapes, 1, 2)
-    # the curves are similar; single amplitudes are not needed
+    # the curves are nearly collinear, and single amplitudes are not needed
     ridge = 1e-8 * np.trace(normal, axis1=1, axis2=2)
     normal += ridge[:, None, None] * np.eye(shapes.shape[1])
     amplitudes = np.linalg.solve(normal, (shapes @ force)[..., None])[..., 0]
@@ -266,7 +266,7 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
 
 
 def _combined(since: Array, shifts: Array, errors: Array, common: float) -> StartShift:
-    """Combine the starts' shifts, at times since the middle; all share a `common` error."""
+    """Return shift and rate from the shifts of all starts, `since` [s] after the middle."""
     design = np.stack([np.ones_like(since), since], axis=1)
     prior = np.diag([0.0, limits.CLOCK_RATE_ERROR.value**-2])
     order = np.argsort(shifts)
@@ -289,6 +289,6 @@ def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Star
     if error[1] > limits.MAX_ERROR_OF_CLOCK_RATE.value * limits.CLOCK_RATE_ERROR.value:
         # a poorly determined rate would only move the shift away from the known time
         solution = np.array([solution @ (weight @ design) / weight.sum(), 0.0])
-    # both loggers see all starts alike, so this error does not average out
+    # the sampling delays all starts alike, so this `common` error does not average out
     error[0] = np.hypot(error[0], common)
     return StartShift(float(solution[0]), float(error[0]), float(solution[1]), float(error[1]))
