@@ -98,7 +98,7 @@ Sign = Literal[1, -1]
 
 
 class NoSwitches(BaseModel):
-    """Model in which only switches may be true or false.
+    """Base model that rejects true and false where a number or a text is expected.
 
     Examples
     --------

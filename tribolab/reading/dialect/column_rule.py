@@ -100,7 +100,7 @@ class Column(Strict):
 
     @property
     def bare(self) -> Counted | None:
-        """Events counted by a unit per time that does not name them."""
+        """Meaning of a unit such as 1/s for this quantity: cycles, radians or nothing."""
         return quantity(self.quantity).bare if self.quantity else None
 
     def si_unit(self, unit: str | None) -> str:
@@ -109,7 +109,7 @@ class Column(Strict):
             return quantity(self.quantity).unit
         if unit in (None, "", "1", "-", "%"):
             return "1"
-        turning = reciprocal(plain_unit(str(unit)))  # cycles remain cycles
+        turning = reciprocal(plain_unit(str(unit)))  # cycles are not converted to radians
         return _TURNING.get(turning.counts if turning else "") or base_unit(str(unit))
 
     @property
@@ -172,7 +172,7 @@ class Value(Strict):
 
     @property
     def bare(self) -> Counted | None:
-        """Events counted by a unit per time that does not name them, if the name is a quantity."""
+        """Meaning of a unit such as 1/s (cycles, radians, nothing), if the name is a quantity."""
         return QUANTITIES[self.name].bare if self.name in QUANTITIES and self.to is None else None
 
     @property
@@ -192,9 +192,9 @@ class Value(Strict):
             ) from error
 
     def _own_unit(self) -> str:
-        """Return the SI unit for the given unit: of a quantity of its kind, else base units."""
+        """Return a suitable SI unit: that of a quantity of this dimension, else in base units."""
         units = dict.fromkeys(known.unit for known in QUANTITIES.values())
-        if reciprocal(str(self.unit)):  # cycles remain cycles
+        if reciprocal(str(self.unit)):  # cycles are not converted to radians
             units = dict.fromkeys(("1/s", "Hz", "rad/s", *units))
         for unit in units:
             with contextlib.suppress(TribolabError):

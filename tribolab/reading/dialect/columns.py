@@ -17,7 +17,7 @@ AGAIN = "~"  # separates a quantity and the number of a further column for it
 
 
 class ReadColumn(NamedTuple):
-    """Column to be read: place (from 0) and key; ``si = scale * x + offset``.
+    """Column to be read: index (from 0), key, and conversion ``si = scale * x + offset``.
 
     The key is its quantity or symbol, with ``~2`` ... for a further column of the same quantity;
     see `first_filled`.
@@ -77,7 +77,7 @@ def resolve(
 
 
 def symbols(signals: Sequence[ReadColumn], dialect: Dialect) -> dict[str, str]:
-    """Return the SI units of the columns used only in formulas."""
+    """Return the SI units of the columns that are used only in formulas, by symbol."""
     own = {column.symbol for column in dialect.column if column.symbol}
     return {signal.quantity: signal.si_unit for signal in signals if signal.quantity in own}
 

@@ -1,4 +1,4 @@
-"""Files with named columns, as a dialect states, and readers in Python."""
+"""Opening of files with named columns, by a dialect or by a reader in Python."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class PythonReader(Dialect):
 
 
 def python_reader(name: str) -> PythonReader:
-    """Return the dialect of a reader; its columns become known with a file.
+    """Return the dialect of a reader, without its columns, which are found in each file.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def python_reader(name: str) -> PythonReader:
 
 
 def recognised_by(head: bytes) -> list[Dialect]:
-    """Return the installed readers that accept a file by its first bytes; else those that may."""
+    """Return the installed readers that recognise the first bytes of a file, or else may."""
     said = answers(head)
     sure = [name for name, answer in said.items() if answer == "yes"]
     return [python_reader(name) for name in sure or said]

@@ -225,5 +225,5 @@ def _quantity(text: str, formula: str) -> Operand:
 
 
 def _si_unit(unit: str) -> str:
-    """Return the SI base units of a unit in the notation for conversions."""
+    """Return a unit expressed in SI base units, spelled so that `to_si` accepts it."""
     return base_unit(unit).replace("**", "^") if unit not in ("", "1") else "1"

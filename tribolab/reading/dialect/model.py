@@ -150,7 +150,7 @@ class Dialect(Strict):
 
     @property
     def values_used(self) -> set[str]:
-        """Names of values and others that the speed or formulas depend on."""
+        """Names of the values, columns and quantities that the speed or formulas use."""
         formulas = (names_in(parse_formula(rule.formula)) for rule in self.derived)
         return set(self.speed.values_named.values()).union(*formulas)
 
@@ -158,9 +158,10 @@ class Dialect(Strict):
 def _check_formulas(
     derived: tuple[Derived, ...], columns: list[str], values: list[str], sure: set[str]
 ) -> None:
-    """Raise if a formula uses more than columns, values with a unit, and earlier results.
+    """Raise if a formula uses a name that is no column, value with a unit, or earlier result.
 
-    A quantity with a required column has no formula; for an optional column it is the substitute.
+    A quantity with a required column must not have a formula; for an optional column the formula is
+    a substitute.
     """
     known = {*columns, *values}
     for rule in derived:
@@ -181,7 +182,7 @@ def _check_pitch(
     values: Sequence[Value],
     columns: Sequence[str],
 ) -> None:
-    """Raise if a pitch cannot define positions."""
+    """Raise unless the pitch or length of a profile is given once, and in metres."""
     keys = {"pitch": pitch, "pitch_value": pitch_value, "length_value": length_value}
     given = {key: text for key, text in keys.items() if text is not None}
     if not given:

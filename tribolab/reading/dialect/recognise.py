@@ -72,7 +72,7 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
         dialect = as_written(file, dialect)
         raw = find_tables(file, dialect, head_only=True)
     except ReadError as error:
-        # otherwise recognised, so that the error is reported
+        # if preamble and names match, the file is recognised, so that its error is reported
         named = all(name.partition(" [")[0] in text for name in rules.header)
         return None if rules.preamble and named else str(error)
     names = {
@@ -94,7 +94,7 @@ def _text(head: bytes, encoding: str) -> str:
 
 
 def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
-    """Check a table without header by the number of its columns and relations between them."""
+    """Return why a table without header does not match in number or relation of its columns."""
     columns, delimiter = dialect.recognise.columns, dialect.text.delimiter
     first = _FIRST_LINE.match(text)  # sufficient for most files
     rows = []

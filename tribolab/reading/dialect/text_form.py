@@ -17,7 +17,7 @@ from tribolab.reading.text.cells import split_name, split_row
 from tribolab.reading.text.first_bytes import File, peek
 
 _ANY = "any"
-_DELIMITERS = ("\t", ";", "|", ",")  # of several that split a header equally, the first
+_DELIMITERS = ("\t", ";", "|", ",")  # if several split a header equally, the first is used
 _ROWS = 20  # lines inspected below the names
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
 _OF_NUMBERS = "0123456789.,;|+-eE \t"  # characters of a row of numbers, which names no column
@@ -25,7 +25,7 @@ _COMMA, _POINT = re.compile(r"\d,\d"), re.compile(r"\d\.\d")
 
 
 def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
-    """Complete a dialect whose table format is determined by the file.
+    """Return a dialect completed with the table format of a file: delimiter, decimal mark, units.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
 
 
 class _Lines(NamedTuple):
-    """Lines of a text, and the numbers of those that are more than numbers."""
+    """Lines of a text, and the indices of those that contain more than numbers."""
 
     lines: list[str]
     named: list[int]
@@ -89,7 +89,7 @@ def _lines_of(head: bytes) -> tuple[_Lines, str]:
 def _decoded(head: bytes) -> tuple[str, str]:
     """Return a file's first text, and its encoding."""
     if head.startswith(_WIDE):
-        return head.decode("utf-16", errors="ignore"), "utf-8"  # it is converted to that
+        return head.decode("utf-16", errors="ignore"), "utf-8"  # the encoding after conversion
     try:
         return head.decode("utf-8-sig"), "utf-8"
     except UnicodeDecodeError as error:

@@ -32,7 +32,7 @@ class Known(NamedTuple):
     varies
         Level at which its value changes: calibration, mount, run or stroke.
     distribution
-        Kind of the statement.
+        How it was stated: as standard or expanded uncertainty, half-width, triangular or step.
     source
         Source of the statement.
     """
@@ -112,7 +112,7 @@ class StatedUncertainty(Strict):
 
 
 def _difference(text: str, unit: str) -> float:
-    """Return a size in an SI unit; for a temperature, a difference."""
+    """Return an uncertainty in an SI unit; a temperature is a difference, without offset."""
     size = to_si(text, unit, name="value")
     if unit == "K":
         size -= conversion(text.strip().lstrip("+-.0123456789eE "), unit)[1]

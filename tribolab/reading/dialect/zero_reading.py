@@ -1,4 +1,4 @@
-"""Zeros read where the user states: at the start, in an interval, in a blank run."""
+"""Zeros of signals, read in an interval that the user states, or in a blank run."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _SAMPLES = re.compile(r"^\s*first\s+(\d+)\s+samples?\s*$")
 _FIRST = re.compile(r"^\s*first\s+(\S.*?)\s*$")
 _BETWEEN = re.compile(r"^\s*(\S.*?)\s+to\s+(\S.*?)\s*$")
 _BLANK = re.compile(r"^\s*file\s+(\S.*?)\s*$")
-_MIN_SAMPLES = 10  # samples
+_MIN_SAMPLES = 10  # needed to read a zero
 _RUBS = 0.12  # share of the highest friction above which there is contact
-_MOVES, _MOSTLY = 0.01, 0.5  # shares: of the highest speed, of the samples
+_MOVES, _MOSTLY = 0.01, 0.5  # motion: share of the highest speed, share of samples above it
 _BATCHES = 16  # batches whose scatter gives the error of the zero
 
 
@@ -143,7 +143,9 @@ def zeros_of_derived(
             continue
         signal, unit = signals[used[0]], quantity(name).unit
         large = np.abs(signal) > 0.5 * np.nanmax(np.abs(signal), initial=0.0)
-        factor = float(np.median(columns[name][large] / signal[large]))  # proportional to it
+        factor = float(
+            np.median(columns[name][large] / signal[large])
+        )  # the force is proportional to the signal
         for key in ("zero", "zero_sem", "zero_uncertainty"):
             if (value := attrs.pop(f"{used[0]}_{key}", None)) is not None:
                 times = factor if key == "zero" else abs(factor)
@@ -194,7 +196,7 @@ def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: J
 
 
 def _samples_without_friction(friction: np.ndarray, rows: int) -> int:
-    """Return how many more samples have no friction; it starts with five samples in a row."""
+    """Return how many more samples follow before friction starts, five samples in a row."""
     rubs = friction[rows:] > _RUBS * np.nanpercentile(friction, 90)
     held = np.convolve(rubs, np.ones(5), "valid") >= 5
     return int(np.argmax(held)) if held.any() else 0
@@ -222,7 +224,7 @@ def _samples(
     blank: Callable[[str], Mapping[str, np.ndarray]],
     where: str,
 ) -> np.ndarray:
-    """Return the samples for a zero."""
+    """Return the samples of a signal in which its zero is read, of the run or of a blank run."""
     if rule.file:
         of_file = blank(rule.file)
         if name not in of_file:

@@ -31,7 +31,7 @@ _POLL = 0.01  # s between checks of a child, if the system cannot wait for one
 
 
 def serve() -> None:
-    """Do jobs from standard input until its end."""
+    """Run the jobs that arrive on standard input, until it is closed."""
     source = os.fdopen(os.dup(0), "rb")
     answers = os.fdopen(os.dup(1), "wb")
     null = os.open(os.devnull, os.O_RDWR)

@@ -15,7 +15,7 @@ INTERVAL_PATTERN = rf"^{INTERVAL_KEY}: (\S+)"
 
 
 class OneClock(NamedTuple):
-    """Columns at the times of one clock, and the indices of those that had another."""
+    """Columns at the times of one clock; `others`: clocks of interpolated columns, by index."""
 
     values: list[np.ndarray]
     clock: Clock
@@ -28,20 +28,21 @@ class OneClock(NamedTuple):
 
 
 def on_one_clock(columns: Sequence[RawColumn], lead: int | None = None) -> OneClock | None:
-    """Return columns at the times of one of them.
+    """Return columns with separate clocks, interpolated to the times of one of them.
 
     Parameters
     ----------
     columns
         The columns.
     lead
-        Place of the column whose clock is used; by default that with the shortest interval.
+        Index of the column whose clock is used; by default that with the shortest interval.
 
     Returns
     -------
     OneClock or None
         None if a column has no clock. Other columns are interpolated linearly. Outside their range
-        they are NaN; rows at the ends are left out if less than one of their intervals is missing.
+        they are NaN, but rows at the ends are left out if a column misses them by at most one of
+        its intervals.
 
     Raises
     ------

@@ -117,7 +117,7 @@ def _variables_of_classic(file: BinaryIO, version: int) -> int:
 
 
 def is_hdf5(path: Path) -> bool:
-    """Whether HDF5 begins at byte 0, 512, 1024, 2048 ..., as the library also checks.
+    """Whether a file contains HDF5, which may begin at byte 0, 512, 1024, 2048 ...
 
     References
     ----------

@@ -31,7 +31,7 @@ _FULL = np.array([8388607.0, 8388608.0, 16777215.0, 32767.0, 32768.0, 65535.0])
 _FULL = np.concatenate([_FULL / 10.0**power for power in range(1, 7)])
 _ROUNDED = 1e-5  # relative rounding of a sentinel with few decimals
 _SINGLE = 2e-7  # relative rounding in single precision
-_TWICE = 2
+_TWICE = 2  # fewest occurrences of a sentinel
 _OUTSIDE = 5.0  # ratio to the largest other number
 _KINDS = 4  # most sentinels per column
 
@@ -52,7 +52,7 @@ class Marked(NamedTuple):
 def take_marks(
     parts: Sequence[np.ndarray], scale: float = 1.0, offset: float = 0.0
 ) -> list[Marked]:
-    """Replace sentinels by NaN.
+    """Replace the sentinels of a column by NaN, and return them.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def _mask_mark(parts: Sequence[np.ndarray], number: float) -> None:
 def measurable(values: np.ndarray) -> np.ndarray:
     """Return values with impossibly large ones as NaN, and negligibly small ones as 0.
 
-    So squares and ratios of numbers in any file are finite. Infinite values are kept, and refused
+    This keeps squares and ratios of the values finite. Infinite values are kept here, and refused
     or left out later.
 
     >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()

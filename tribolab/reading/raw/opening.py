@@ -41,8 +41,8 @@ _HANDLED = (
 
 NO_ROOM = 6  # exit code of a child that cannot write its result
 inside = False  # whether this process is the child
-# refusals and failures with their time [s], by path, size, time, inode and call, as a dozen readers
-# may each try a file for some seconds
+# refusals and failures with their time [s], by path, size, time, inode and call; without them, a
+# dozen readers would each try a bad file for some seconds
 _REFUSED: dict[tuple[Path, int, int, int, str], tuple[ReadError, float]] = {}
 
 
@@ -96,7 +96,7 @@ def isolated(*libraries: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def largest_unpacked(size: int) -> int:
-    """Return the number of bytes to which a compressed file may unpack.
+    """Return the largest number of bytes to which a compressed file may unpack.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def _in_child(
         f"{path}: the file is damaged or hostile: {_ending(ended)}; copy it again from where it "
         "was written"
     )
-    if ended.code is None or ended.code > 0:  # a signal may have another cause
+    if ended.code is None or ended.code > 0:  # not after a signal, which may have another cause
         _REFUSED[*asked, function.__qualname__] = crashed, time.monotonic()
     raise crashed
 
@@ -208,7 +208,7 @@ def _ending(ended: Ended) -> str:
 
 @contextlib.contextmanager
 def report_damage(path: Path, what: str) -> Iterator[None]:
-    """Convert any exception of a library on a damaged file to one error.
+    """Convert any exception that a library raises on a damaged file to a `ReadError`.
 
     Parameters
     ----------

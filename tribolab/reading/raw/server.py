@@ -19,7 +19,7 @@ _ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
-    "ARROW_DEFAULT_MEMORY_POOL": "system",  # others reserve uncounted addresses
+    "ARROW_DEFAULT_MEMORY_POOL": "system",  # other pools reserve much address space
     "HDF5_PLUGIN_PRELOAD": "::",
     "HDF5_USE_FILE_LOCKING": "FALSE",
     "PYTHONSAFEPATH": "1",
@@ -69,7 +69,7 @@ class Server:
                     size = process.stdout.read(LENGTH)
                     if len(size) == LENGTH:
                         answer = process.stdout.read(int.from_bytes(size, "little"))
-                        ended: Ended | str = pickle.loads(answer)  # name of a missing library
+                        ended: Ended | str = pickle.loads(answer)  # text: missing library
                         return ended
                 except OSError:
                     pass

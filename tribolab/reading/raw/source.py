@@ -120,7 +120,7 @@ def _state(path: Path) -> tuple[Identity, str] | None:
     """Return the identity of a file and its checksum; None if it does not exist.
 
     The checksum is needed because file systems and networks update times late and coarsely. For a
-    file that is long at rest the times suffice.
+    file that has not changed for long the times suffice.
     """
     with contextlib.suppress(OSError, ValueError):
         if (found := _identity_and_age(path)) is not None:

@@ -25,7 +25,7 @@ _CHUNK = 1 << 20
 _MAX_DEFLATED = 1032  # highest compression ratio of zlib (zlib.net/zlib_tech.html)
 _STATED = 4  # bytes at the end of a gzip file that state its unpacked size, modulo 4 GiB
 _MAX_README = 1 << 16  # bytes
-_MAX_LETTER = 3  # bytes of an incomplete character at the end of what was read
+_MAX_LETTER = 3  # bytes of an incomplete character at the end of a block
 # files in an archive besides data: readmes, pictures, system files
 _README = re.compile(
     r"(?:^|/)[^/]*(?:read[ _-]?me|lies[ _-]?mich|l[ie]s?ez[ _-]?moi|leeme|leggimi|leia[ _-]?me|info"
@@ -46,7 +46,7 @@ class _Source(Protocol):
 
 
 def unpacked(path: Path, head: bytes) -> Path:
-    """Return the path of a compressed file's content; of another file its own path.
+    """Return the path of the unpacked content of a compressed file; of another file its own path.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def unpacked(path: Path, head: bytes) -> Path:
 
 
 def of_the_file(error: ReadError, inside: Path, path: Path) -> ReadError:
-    """Return an error on an unpacked file in terms of the user's file.
+    """Return an error about an unpacked file, reworded for the compressed file that the user named.
 
     >>> error = ReadError("/tmp/u/a.csv: no heights", cure="describe 'a.csv'")
     >>> print(of_the_file(error, Path("/tmp/u/a.csv"), Path("raw/a.csv.gz")))
@@ -177,7 +177,7 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
 
 
 def _readme_text(archive: zipfile.ZipFile, names: list[str], first: bytes) -> bytes:
-    """Return the readmes of an archive in the table's encoding, as header of its text table."""
+    """Return the readmes of an archive, which are read as a header above its text table."""
     if b"\0" in first or not _is_utf8(first):
         return b""
     texts = []
@@ -240,7 +240,7 @@ ZIP_DAMAGE = (
 
 
 def refuse_bomb(path: Path) -> None:
-    """Raise if an archive unpacks to far more than its size, or has too deep XML.
+    """Raise if an archive unpacks to far more than its size, or has XML that is nested too deeply.
 
     Raises
     ------

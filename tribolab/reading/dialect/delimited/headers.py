@@ -21,7 +21,7 @@ LONGEST_LINE = 4 << 20  # bytes, some 300 000 columns; longer lines are not rows
 
 
 def header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> list[int]:
-    """Return the offsets of the header lines."""
+    """Return the offset [bytes] of each header line."""
     header = dialect.header
     first = 3 if content[:3] == BOM else 0
     if header.pattern is not None:
@@ -52,7 +52,7 @@ def header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> l
 def read_header(
     file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect
 ) -> tuple[int, tuple[str, ...], tuple[str | None, ...]]:
-    """Return the offset after the header block, names and units."""
+    """Return the offset [bytes] after a header, and the names and units of its columns."""
     header, delimiter = dialect.header, dialect.text.delimiter
     if header.line is None and header.pattern is None:
         for _ in range(header.skip):
@@ -89,8 +89,8 @@ def parted_as_numbers(
 ) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
     """Return names and units of a header in which blanks also separate words of one name.
 
-    Units in brackets belong to the names before them. If the numbers still differ, there are no
-    names.
+    Units in brackets belong to the names before them. If there are still more or fewer names than
+    columns, none is returned.
     """
     fits = len(names) == width or dialect.text.delimiter != "whitespace"
     if fits or any(column.position is None for column in dialect.column):
@@ -108,9 +108,10 @@ def parted_as_numbers(
 
 
 def counts_its_rows(rows: Sequence[str], delimiter: str) -> bool:
-    """Whether two rows begin with their numbers, for which no column is named.
+    """Whether two rows begin with a row number, which is not a column of the header.
 
-    Between delimiters only in quotes, as R's `write.table` does it; a time may count seconds.
+    Unless blanks separate the cells, row numbers must be in quotes, as in R's `write.table`;
+    without quotes they may be a time in seconds.
     File: xlook of biaxial rigs (jrleeman/LeemanNatComm2016).
     """
     blanks = delimiter == "whitespace"
@@ -148,7 +149,7 @@ def table_encoding(dialect: Dialect) -> str:
 
 
 def is_wide(dialect: Dialect) -> bool:
-    """Whether text is converted to UTF-8: UTF-16 or 32, or missing words with non-ASCII letters."""
+    """Whether text must be converted to UTF-8: it is UTF-16 or 32, or `missing` is not ASCII."""
     encoding = dialect.text.encoding.lower().replace("_", "-")
     words = not all(word.isascii() for word in dialect.text.missing)
     plain = encoding.startswith(("utf-8", "ascii"))

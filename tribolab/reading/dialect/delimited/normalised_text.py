@@ -92,7 +92,7 @@ def _tabs_for_blanks(content: bytes) -> bytes:
 
 
 def _skip_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | None:
-    """Return the content without the lines below the first header that the dialect skips."""
+    """Return the content without the lines that match `skip_lines`, below the first header."""
     if dialect.text.skip_lines is None:
         return content
     content = _content(file, False) if content is None else content

@@ -42,7 +42,7 @@ class Hasher:
 
 
 class _Work(NamedTuple):
-    """Block in work; its buffer is reused when both futures are done."""
+    """Block that is being parsed and hashed; its buffer is reused when both are done."""
 
     buffer: bytearray
     parsed: Future[list[list[np.ndarray]]]

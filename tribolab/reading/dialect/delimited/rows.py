@@ -136,7 +136,7 @@ class RowParser:
         before = self._lines_before(place)
         lines = block.decode("utf-8", errors="replace").splitlines()
         delimiter, missing = self._parse["delimiter"], {*_NO_VALUE, *self._convert["null_values"]}
-        is_table = place > self._table.start  # otherwise its content is not quoted
+        is_table = place > self._table.start  # messages quote only cells of a table
         for number, line in enumerate(lines):
             if not line.strip():
                 continue

@@ -52,7 +52,7 @@ _WRAPS_AT = re.compile(
 
 
 class _Channel(NamedTuple):
-    """Channel: name, unit, number = raw * scale + bias; counts per turn and wrap of an encoder."""
+    """Channel: name, unit, value = raw * scale + bias; of an encoder counts per turn and wrap."""
 
     name: str
     unit: str
@@ -63,7 +63,7 @@ class _Channel(NamedTuple):
 
 
 class _Records(NamedTuple):
-    """Settings of the header, with offset, type and layout of the numbers."""
+    """Contents of a header: settings; offset [bytes], type and channels of binary numbers."""
 
     settings: list[Setting]
     offset: int
@@ -84,7 +84,7 @@ def declares_records(head: bytes) -> bool:
 
 
 def read_declared_records(path: Path) -> RawFile:
-    """Read the settings, channels and numbers declared by a header.
+    """Read a file of binary numbers that are declared by a text header.
 
     Parameters
     ----------
@@ -98,7 +98,8 @@ def read_declared_records(path: Path) -> RawFile:
 
     Notes
     -----
-    An encoder that wraps is unwrapped to turns, as it moves less than half of its range per row.
+    Counts of an encoder that wraps are unwrapped and converted to turns, assuming that it moves
+    less than half of its range per row.
     """
     with path.open("rb") as file:
         records = _declared(file.read(_MAX_HEADER))
@@ -147,7 +148,7 @@ def _declared(head: bytes) -> _Records | None:
 
 
 def _end_of_line(text: str, mark: re.Match[str]) -> int:
-    """Return the end of the mark's line; the numbers after it may begin with a NUL byte."""
+    """Return the offset after the line that ends the header; 0 if this line is incomplete."""
     end = text.find("\n", mark.start() + len(mark[0].rstrip()))
     return end + 1 if end >= 0 else 0
 
@@ -183,7 +184,7 @@ def _channels(settings: dict[str, str], text: str) -> list[_Channel]:
 
 
 def _channel(declared: str, inside: str) -> _Channel:
-    """Return the declaration of a channel.
+    """Parse the declaration of a channel; `inside` is the sign of an offset that is scaled too.
 
     >>> _channel("FT unit=N scale=0.1 bias=2", "")[:4], _channel("FN, N", "")[:2]
     (('FT', 'N', 0.1, 2.0), ('FN', 'N'))
@@ -239,7 +240,7 @@ def _settings_in(text: str) -> list[Setting]:
 
 
 def read_records(path: Path, record: np.dtype[np.void], offset: int) -> RawFile:
-    """Read the records of a file.
+    """Read a file of binary records of one type; each field is a column.
 
     Parameters
     ----------

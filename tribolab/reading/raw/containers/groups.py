@@ -39,7 +39,7 @@ class Groups:
             Whether to sort the tables by name (2 before 10), because the file has no order.
         """
         order = _in_natural_order(list(self._columns)) if sort else list(self._columns)
-        # a single column next to settings is a setting
+        # settings next to a single column belong to the file
         apart = {name for name in order if name and len(self._columns[name]) > 1}
         tables = []
         for name in order:
@@ -80,7 +80,7 @@ def plain(value: object) -> object:
 
 
 def settings_of(key: str, value: object, path: str = "") -> list[Setting]:
-    r"""Return an attribute as a setting; none if it is empty or has parts of its own.
+    r"""Return an attribute as a list of one setting; an empty list if it has no plain value.
 
     Parameters
     ----------

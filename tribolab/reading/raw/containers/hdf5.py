@@ -51,7 +51,7 @@ def read_hdf5(path: Path) -> RawFile:
     found = _Found(h5py)
     with report_damage(path, "HDF5 file"):
         with h5py.File(path, "r") as file:
-            found.tell("", file)
+            found.add_settings("", file)
             file.visititems(found.visit)
     return found.groups.as_file(path, "hdf5", sort=True)
 
@@ -66,7 +66,7 @@ class _Found:
     def visit(self, name: str, item: Any) -> None:
         if name.startswith(_OF_LIBRARY):
             return
-        self.tell(name, item)
+        self.add_settings(name, item)
         if not isinstance(item, self._h5py.Dataset) or item.size is None:
             return
         units = _first(item, _UNITS)
@@ -92,7 +92,7 @@ class _Found:
             group, _, label = name.rpartition("/")
             self._add(group, label, item[()], unit, meaning if isinstance(meaning, str) else "")
 
-    def tell(self, name: str, item: Any) -> None:
+    def add_settings(self, name: str, item: Any) -> None:
         """Store attributes and single values as settings of their group."""
         is_data = isinstance(item, self._h5py.Dataset)
         group, own = name, name.rsplit("/", 1)[-1]
@@ -125,7 +125,7 @@ class _Found:
         self.groups.add_column(group, RawColumn(label, unit_text, values.ravel(), meaning, path))
 
     def _elements(self, name: str, item: Any) -> None:
-        """Read a field of a structure array, whose values are stored elsewhere."""
+        """Read a field of a structure array, whose elements are stored in other datasets."""
         group, _, field = name.rpartition("/")
         for number, reference in enumerate(item[()].ravel()[:_MAX_ELEMENTS], start=1):
             target = item.file[reference] if reference else None

@@ -1,4 +1,4 @@
-"""JSON with columns of numbers: settings, and a table for each part."""
+"""JSON files with columns of numbers: their tables and settings."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
 
 
 def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int) -> list[Setting]:
-    """Collect tables, and return the settings of parts without tables."""
+    """Append the tables of a part to `tables`; return the settings that belong to none of them."""
     if depth > _DEEPEST:
         return []
     columns, units = _columns(part)
@@ -177,7 +177,7 @@ def _values_of(one: Json) -> list[float] | None:
 
 
 def _numbers_of(values: object) -> list[float] | None:
-    """Return a list of numbers, also from an object with counted keys; else None."""
+    """Return a list of numbers, also from an object with keys "0", "1" ...; else None."""
     if isinstance(values, dict) and len(values) >= _MIN_NUMBERS and all(map(str.isdigit, values)):
         values = list(values.values())
     if not isinstance(values, list) or len(values) < _MIN_NUMBERS:

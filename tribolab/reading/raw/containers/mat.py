@@ -27,8 +27,8 @@ _STATED = 64  # compressed bytes that contain type and length
 class Variable(NamedTuple):
     """Variable with its name and numbers (None for text, cells and complex arrays).
 
-    A field of a structure is named as in MATLAB: ``data.force``, of an array of structures
-    ``data(2).force``. `texts` are its text, or the texts of its cells.
+    A field of a structure is named as in MATLAB: ``data.force``, or ``data(2).force`` in
+    an array of structures. `texts` are its text, or the texts of its cells.
     """
 
     name: str
@@ -77,7 +77,7 @@ def read_variables(path: Path) -> list[Variable]:
 
 
 def _refuse_bomb(path: Path) -> None:
-    """Raise if compressed variables state more bytes than they can unpack to."""
+    """Raise if the compressed variables state larger sizes than a file may unpack to."""
     with path.open("rb") as file:
         place, unpacked, size = _HEADER, 0, file.seek(0, 2)
         file.seek(_HEADER - 2)

@@ -18,7 +18,7 @@ _NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys
 
 @isolated()
 def read_npz(path: Path) -> RawFile:
-    """Read the arrays of an archive.
+    """Read the named arrays of a NumPy archive as columns.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from tribolab.reading.raw.model import Place, RawColumn, RawFile, RawTable, Sett
 from tribolab.reading.raw.opening import isolated, report_damage
 
 _MAX_CELLS = 50_000_000  # most cells of a sheet
-_MAX_ROWS, _MAX_WIDE = 100, 12  # size of a block of settings in cells
+_MAX_ROWS, _MAX_WIDE = 100, 12  # largest block of settings: rows and columns
 _HEAD = 4096  # bytes sufficient to recognise a workbook in XML
 _SUMMARY = 30  # most rows of a summary below a table
 _MAX_SETTING = 200  # characters of a setting
@@ -126,7 +126,7 @@ def _table_below(
     columns = []
     for place, (name, unit) in enumerate(zip(names, units, strict=False)):
         cells = [row[place] if place < len(row) else "" for row in body]
-        # an empty row ends the table
+        # empty cells below the last value do not belong to the column
         filled = [n for n, cell in enumerate(cells) if cell != ""]
         values = of_cells(cells[: filled[-1] + 1 if filled else 0])
         columns.append(RawColumn(name, unit, values, path=name))
@@ -167,7 +167,7 @@ def _settings_above(rows: Cells) -> list[Setting]:
 
 
 def of_cells(cells: Sequence[object]) -> np.ndarray:
-    """Return a sheet column as numbers, moments or times of day; if not possible, an invalid cell.
+    """Return a sheet column as numbers, dates or times of day; if impossible, its first bad cell.
 
     >>> of_cells(["0,5", "", 2]).tolist(), of_cells([1.0, "error"]).tolist()
     ([0.5, nan, 2.0], ['error'])
