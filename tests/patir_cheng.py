@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtr
 
-from tribolab.lubrication.factors import FactorTable, FlowFactors, RoughBody, check_rough_body
+from tribolab.lubrication.factor_table import FactorTable
+from tribolab.lubrication.factors import FlowFactors, RoughBody, check_rough_body
 from tribolab.units.conversion import positive
 
 _CONTACT = 1 / 300  # gap over h_rms below which no fluid is sheared

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tribolab.lubrication.factors import FactorTable, FlowFactors
+from tribolab.lubrication.factor_table import FactorTable
+from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.flow import flow_between
 from tribolab.lubrication.friction import fluid_friction
 from tribolab.lubrication.mesh import Mesh

@@ -1,11 +1,11 @@
-"""Energy balance of adhesion: solves Eqs. (11) and (12) with the contact area P(q).
+"""Energy balance of adhesion, Eqs. (11) and (12) of Xu et al. (2026), with the contact area P(q).
 
-Differentiated, Eq. (11) can be integrated forward in wavenumber: the binding energy g(q) =
+The derivative of Eq. (11) is integrated from small to large wavenumbers: the binding energy g(q) =
 gamma_eff P increases by the elastic energy of finer roughness, and P(q) decreases where the
-diffusing stress reaches the boundary given by gamma_eff at the same wavenumber. The only unknown is
-g at the smallest wavenumber, such that g = gamma_0 P(q1) I(xi) at the largest one: one bracketed
-root for each pressure. Alternating solution of Eq. (11) for P and gamma_eff has the same root, but
-does not converge where gamma_eff(1) begins to exceed zero.
+diffusing stress reaches the detachment stress, which gamma_eff determines at the same wavenumber.
+The only unknown is g at the smallest wavenumber, such that g = gamma_0 P(q1) I(xi) at the largest
+one: one bracketed root for each pressure. Solving Eq. (11) in turn for P and gamma_eff has the same
+root, but does not converge where gamma_eff(1) begins to exceed zero.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Interface:
         kappa: float,
         c_a: float,
     ) -> Interface:
-        """Return an interface with nodes graded by the stress and the spectrum integrated between.
+        """Return an interface with nodes dense where the stress increases, and integrals between.
 
         Raises
         ------
@@ -83,7 +83,7 @@ class Interface:
         stress = cumulative_at(fine, q, spectrum, 3)
         if not stress[-1] > 0:
             raise AnalysisError("psd: C is zero everywhere, there is no roughness to adhere to")
-        # the fourth root gives the first increase of the stress as many nodes as the last decade
+        # the fourth root puts as many nodes at the first increase of stress as in the last decade
         even = np.log(fine / q[0]) / np.log(q[-1] / q[0])
         measure = _EVEN_SHARE * even + (1 - _EVEN_SHARE) * (stress / stress[-1]) ** 0.25
         node = np.exp(np.interp(np.linspace(0, 1, nodes), measure, np.log(fine)))
@@ -106,7 +106,7 @@ class Interface:
 
     @property
     def area_gain(self) -> float:
-        """True over projected surface area, int (1 + xi^2 x)^(1/2) exp(-x) dx in Eq. (11)."""
+        """Ratio of true to projected area, int (1 + xi^2 x)^(1/2) exp(-x) dx in Eq. (11)."""
         return float(1 + np.sqrt(np.pi) / 2 * self.slope * erfcx(1 / self.slope))
 
     def without_adhesion(self, pressure: np.ndarray, theory: AreaTheory = "persson") -> np.ndarray:
@@ -188,10 +188,10 @@ class Interface:
         )
 
     def solve(self, pressure: np.ndarray, work: np.ndarray, iterations: int) -> Balance:
-        """Return the solution of Eq. (11) for each problem (k), by a search for g at q0.
+        """Return the solution of Eq. (11) for each problem (k), by a root search for g at q0.
 
-        The root is bracketed by no adhesion at any wavenumber, and by the largest gamma_eff(1) that
-        Eq. (11) allows. It is first searched for on a quarter of the nodes. `pressure` and `work`
+        The bracket extends from no adhesion at any wavenumber to the largest gamma_eff(1) that
+        Eq. (11) allows. The first search uses only a quarter of the nodes. `pressure` and `work`
         must be above zero.
         """
         unit, gained = self.stored(self.without_adhesion(pressure)), work * self.area_gain

@@ -51,21 +51,19 @@ def adhesion_uncertainty(
         ``contact_area_ratio`` [1] (medium, dims of pressure) at the chosen values, ``_low`` and
         ``_high`` at the smallest and largest work of adhesion inside the bounds, ``_std`` over the
         random draws; ``macroscopic_work_of_adhesion`` [J/m2] (medium) at vanishing load, with
-        ``_low`` and ``_high``: if the first is zero and the second is not, the surface energies do
-        not determine whether there is a pull-off force; the variables of `work_of_adhesion_spread`
-        (medium).
+        ``_low`` and ``_high`` (if only ``_low`` is zero, the surface energies do not determine
+        whether there is a pull-off force); and the variables of `work_of_adhesion_spread` (medium).
 
     Raises
     ------
     AnalysisError
         As for `adhesion`.
 
-    Notes
-    -----
-    The area increases with the work of adhesion, so its bounds are exact. Draws are interpolated on
-    a monotonic curve of area over work of adhesion, solved at 15 values or more. A wetting liquid
-    (negative work of adhesion) gives the area without adhesion. The spread is due to the inputs
-    only; it does not include the approximations of Eqs. (11), (13) and (14).
+    Notes ----- The area increases with the work of adhesion, so its bounds are exact. The area of
+    each draw is interpolated on a monotonic curve of area over work of adhesion, solved at 15
+    values or more. A wetting liquid (negative work of adhesion) gives the area without adhesion.
+    The spread is due to the inputs only; it does not include the approximations of Eqs. (11), (13)
+    and (14).
 
     Examples
     --------

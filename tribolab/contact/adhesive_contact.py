@@ -24,7 +24,7 @@ from tribolab.surface.moments import rms_slope
 from tribolab.units.stamping import labelled, stamp
 
 _KAPPA, _C_A = 0.4, 1.0
-_NODES, _ITERATIONS = 200, 100
+_NODES, _ITERATIONS = 200, 100  # defaults of `adhesion`
 AnyPressure = TypeVar("AnyPressure", float, np.ndarray, xr.DataArray)
 
 
@@ -84,18 +84,18 @@ def adhesion(
     -----
     ``gamma_eff(q) P(q) = gamma_0 [P(q1) int (1 + xi^2 x)^(1/2) e^-x dx - (2 pi/delta) int_q^q1 q'^2
     P S C dq']``, ``delta = 4 gamma_0/E*``, ``S = kappa + (1 - kappa) P^2``: Eqs. (11) and (12) of
-    [1]_; gamma_eff is clipped at zero. P(q) is the share of a stress that diffuses from the nominal
-    pressure with the variance ``(pi/2) E*^2 int q^3 C dq`` without reaching
-    ``-c_a sqrt(gamma_eff(q) E* q)`` [2]_; without adhesion this gives Eqs. (6) and (7). Doubling
-    `nodes` from 200 changes areas by less than 0.1 %.
+    [1]_; gamma_eff is clipped at zero. The stress diffuses from the nominal pressure with the
+    variance ``(pi/2) E*^2 int q^3 C dq``; P(q) is the probability that it has not reached the
+    detachment stress ``-c_a sqrt(gamma_eff(q) E* q)`` [2]_. Without adhesion this gives Eqs. (6)
+    and (7). Doubling `nodes` from 200 changes areas by less than 0.1 %.
 
     ``balance_residual`` is the misfit of Eq. (11) at the largest wavenumber, relative to its terms;
     at the other nodes the discretised equations are fulfilled. A pressure below 1e-4 of E* xi/2 (15
     Pa for a smooth rubber contact) is treated as the limit p -> 0: area proportional to p, or
     constant if gamma_eff(1) > 0.
 
-    With another theory of the `area` Eq. (11) is solved unchanged, and the area of that theory is
-    multiplied by the resulting ratio, up to complete contact.
+    With another theory of the `area`, Eq. (11) is still solved with Persson's: the resulting ratio
+    of areas with and without adhesion multiplies the area of that theory, up to complete contact.
 
     References
     ----------
@@ -259,8 +259,8 @@ def macroscopic_work_of_adhesion(
 
     Notes
     -----
-    Eq. (11) of [1]_ at q0. The sign refers to p -> 0: gamma_eff(1) depends on the load, and may
-    vanish under load although a pull-off force exists.
+    Eq. (11) of [1]_ at q0, for p -> 0: gamma_eff(1) depends on the load, and may vanish under load
+    although a pull-off force exists.
 
     References
     ----------

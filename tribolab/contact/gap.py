@@ -77,8 +77,8 @@ def gap_distribution(
         Over the dims of `pressure` and a common grid ``gap`` [m]: ``gap_density`` P(u) [1/m]
         without its delta at u = 0, ``gap_weight`` [1] for sums over f(u), and over the dims of
         `pressure` ``contact_area_ratio`` (the weight of that delta), ``separation`` [m] and
-        ``gap_scale`` [1], the factor that makes <u> equal to it. The weights sum to 1 - A/A0, and
-        ``gap_weight * gap`` to the separation, within 1e-4.
+        ``gap_scale`` [1], the factor that makes <u> equal to the separation. The weights sum to 1 -
+        A/A0, and ``gap_weight * gap`` to the separation, within 1e-4.
 
     Raises
     ------
@@ -90,11 +90,11 @@ def gap_distribution(
     -----
     ``P(u) = int (-dA/A0) [g(u - u1) + g(u + u1)] + (A/A0) delta(u)`` with g a Gaussian of the
     unresolved roughness, and ``u1 = d(u A)/dA``, u(zeta) being the separation at pressure p
-    A0/A(zeta) on that roughness [1]_. At the longest waves no area is open while u(zeta) already
-    decreases, and u1 diverges: the first 1 % of the open area has the u1 reached there. All u are
-    then multiplied by one factor so that <u> is the mean separation. Up to A/A0 = 0.13 that first
-    part changes <u^3> by 1 % and <1/u> by 0.1 %; beyond percolation <u^3> is uncertain by a factor
-    of two.
+    A0/A(zeta) on that roughness [1]_. At the longest wavelengths almost no area opens although
+    u(zeta) already decreases, so that u1 diverges; in the first 1 % of the open area, u1 is
+    therefore limited to its value at the end of that 1 %. All u are then multiplied by one factor
+    so that <u> is the mean separation. Up to A/A0 = 0.13 the limit changes <u^3> by 1 % and <1/u>
+    by 0.1 %; beyond percolation <u^3> is uncertain by a factor of two.
 
     References
     ----------
@@ -124,8 +124,8 @@ def gap_distributions(
 ) -> list[xr.Dataset]:
     """Return several variants of `gap_distribution`, with shared intermediate results.
 
-    Half the `points` in each half decade of u suffice if the surfaces are within some ten
-    roughnesses.
+    `points` is the number of gaps per half decade of u; half the default suffices for mean
+    separations up to some ten h_rms.
     """
     for variant in variants:
         if variant not in ("flow", "plain"):
@@ -223,7 +223,7 @@ def _openings(
 def _nested_separation(
     stiffness: np.ndarray, slope2: np.ndarray, mean_inverse: np.ndarray, gamma: float
 ) -> np.ndarray:
-    """Return the mean separation due to roughness finer than each magnification; 1/q by panel."""
+    """Return the mean separation [m] due to roughness finer than each magnification."""
     size = slope2.size
     row, panel = np.triu_indices(size - 1)
     start, stop = (np.sqrt(np.maximum(slope2[panel + i] - slope2[row], 0)) for i in (0, 1))
@@ -252,8 +252,8 @@ def _folded_mean(openings: _Openings) -> np.ndarray:
 def _grid(openings: _Openings, cutoff: float, points: int) -> tuple[np.ndarray, np.ndarray]:
     """Return gaps and steps: one cell from 0 to `_LUMP` cut-offs, then equal steps in ln u.
 
-    Waves much shorter than the scale of the gap open by less than an atom: the first cell contains
-    their exact share, so that the grid need not resolve them.
+    Waves much shorter than the typical gap open by less than an atomic distance. The first cell
+    contains their share of the area exactly, so that the grid need not resolve them.
     """
     widest = np.max((openings.gap + 8 * openings.height)[openings.share > 0])
     low = round(np.log10(_LUMP) * _PANELS)
@@ -278,7 +278,7 @@ def _bell(z: np.ndarray) -> np.ndarray:
 def _density(
     at: np.ndarray, first: float, share: np.ndarray, gap: np.ndarray, height: np.ndarray
 ) -> np.ndarray:
-    """Return the density at given gaps, a sum of folded Gaussians; in the first cell its mean."""
+    """Return the probability density at gaps: folded Gaussians, averaged over the first cell."""
     some = share > _NEGLIGIBLE * share.sum()
     share, gap, height = share[some], gap[some], np.maximum(height[some], 1e-3 * first)
     narrow, b = 1 / height, gap / height

@@ -76,9 +76,9 @@ class LineContact(Elasticity):
     poisson_ratio
         Poisson's ratio of the flat [1], above -1 and at most 0.5.
     thickness
-        Thickness of the flat [m], bonded to a rigid base; infinite for a half-space.
+        Thickness [m] of the flat, which is bonded to a rigid base; infinite for a half-space.
     counter_modulus, counter_poisson_ratio
-        Modulus [Pa] and Poisson's ratio of the cylinder; infinite modulus: rigid.
+        Young's modulus [Pa] and Poisson's ratio of the cylinder; an infinite modulus is rigid.
 
     Examples
     --------
@@ -153,7 +153,7 @@ def make_contact(geometry: str = "cylinder", **known: float) -> Contact:
 
 
 def plane_strain_ratio(value: str | float) -> float:
-    """Return Poisson's ratio as a number for plane strain; 0.5 (rubber) is allowed.
+    """Return a checked Poisson's ratio as a number; 0.5 (rubber) is allowed.
 
     Raises
     ------

@@ -23,15 +23,15 @@ class Root(NamedTuple):
 
 
 def guided_root(
-    dear: Functions, cheap: Functions, low: np.ndarray, high: np.ndarray, iterations: int
+    expensive: Functions, cheap: Functions, low: np.ndarray, high: np.ndarray, iterations: int
 ) -> Root:
     """Return the root of each expensive function in an interval, guided by a cheap function.
 
     Parameters
     ----------
-    dear, cheap
-        Called as ``dear(x, which)`` with the indices of the functions; the last call of the
-        expensive function (`dear`) is at its root.
+    expensive, cheap
+        Called as ``expensive(x, which)`` with the indices of the functions; the last call of
+        `expensive` is at its root.
     low, high
         Ends between which each function changes sign once (k).
     iterations
@@ -40,7 +40,7 @@ def guided_root(
     Returns
     -------
     Root
-        The search failed if a value is not nearly zero.
+        A search has failed if its value is not nearly zero.
 
     Notes
     -----
@@ -63,7 +63,7 @@ def guided_root(
     """
     every = np.arange(low.size)
     start, *_ = _find_bracketed(cheap, low, high, every, iterations, _ROUGH)
-    outside = np.flatnonzero(np.isnan(start))  # these cheap roots lie just outside
+    outside = np.flatnonzero(np.isnan(start))  # the cheap root lies just outside the interval
     if outside.size:
         ends = np.array([low[outside], high[outside]])
         size = np.abs([cheap(end, outside) for end in ends])
@@ -71,12 +71,12 @@ def guided_root(
     side = _SLOPE_STEP * (high - low)
     aside = np.where(start + side > high, start - side, start + side)
     slope = (cheap(aside, every) - cheap(start, every)) / (aside - start)
-    x, value, steps = _by_secants(dear, start, slope, low, high, min(_SECANTS, iterations))
+    x, value, steps = _by_secants(expensive, start, slope, low, high, min(_SECANTS, iterations))
     lost = np.flatnonzero(~(np.abs(value) < _FINE))
     if lost.size:
-        again = _find_bracketed(dear, low[lost], high[lost], lost, iterations, _FINE)
+        again = _find_bracketed(expensive, low[lost], high[lost], lost, iterations, _FINE)
         x[lost], steps[lost] = again.x, steps[lost] + again.steps
-        value[lost] = dear(x[lost], lost)
+        value[lost] = expensive(x[lost], lost)
     return Root(x, value, steps)
 
 

@@ -34,12 +34,10 @@ def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | fl
     AnalysisError
         If a load is negative, or the contact wider than its cylinder (`tribolab.core.validity`).
 
-    Notes
-    -----
-    ``a = sqrt(4 R F / (pi E* L))``, Eq. (16) of [1]_; for a ball ``(3 F R/(4 E*))^(1/3)``. On a
-    layer (`tribolab.contact.layer`) it is that of the smooth contact with the layer. Section 5 of
-    [1]_ prints 37 mm, but Eq. (16) gives 3.7 mm, in agreement with the width 2a = 7.43 mm in its
-    Appendix B.
+    Notes ----- ``a = sqrt(4 R F / (pi E* L))``, Eq. (16) of [1]_; for a ball ``(3 F R/(4
+    E*))^(1/3)``. On a layer it is the half-width of a smooth contact with that layer
+    (`tribolab.contact.layer`). Section 5 of [1]_ prints 37 mm, but Eq. (16) gives 3.7 mm, in
+    agreement with the width 2a = 7.43 mm in its Appendix B.
 
     References
     ----------
@@ -89,7 +87,7 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray |
 def _smooth(
     load: str | ArrayLike, contact: Contact
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
-    """Return the half-width [m] and, for a layer only, the maximum pressure [Pa]."""
+    """Return the half-width [m] of a smooth contact; for a layer, also its peak pressure [Pa]."""
     force = _loads(load, contact)
     if np.any(force < 0):
         raise AnalysisError(
@@ -123,7 +121,7 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndarray | float:
     """Return the pressure [Pa] of a Hertz contact at a distance x [m] from its centre; 0 outside.
 
-    On a layer it is a half ellipse over the width of that contact, with the same load.
+    On a layer it is approximated by a half ellipse with the same width and load.
     """
     a = hertz_half_width(load, contact)
     inside = np.maximum(a**2 - np.asarray(x, dtype=float) ** 2, 0)
@@ -135,7 +133,7 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 
 
 def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
-    """Return the least load [N/m] ([N] for a ball) of an adhesive contact; negative if a pull.
+    """Return the pull-off load [N/m] ([N] for a ball) of a JKR contact, zero or negative.
 
     Parameters
     ----------

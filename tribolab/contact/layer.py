@@ -23,11 +23,12 @@ class Layer(NamedTuple):
 
 
 def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
-    """Return W(q d), the compliance of a bonded layer over that of a half-space (any shape).
+    """Return the compliance W of a bonded layer relative to a half-space, at x = q d (any shape).
 
     Notes
     -----
-    ``W = [k sinh 2x - 2x] / [k cosh 2x + 2x^2 + 5 - 12 nu + 8 nu^2]``, k = 3 - 4 nu [1]_.
+    ``W = [k sinh 2x - 2x] / [k cosh 2x + 2x^2 + 5 - 12 nu + 8 nu^2]``, k = 3 - 4 nu [1]_, with the
+    wavenumber q and the thickness d.
 
     References
     ----------
@@ -129,7 +130,7 @@ def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[f
     Notes
     -----
     The pressure is ``sum b_n T_2n(t)/sqrt(1 - t^2)`` with sum b_n = 0, for which the logarithmic
-    kernel is exact; the smooth contribution of the layer is summed on Chebyshev nodes.
+    kernel is integrated exactly; the layer's smooth contribution is summed on Chebyshev nodes.
     """
     curve, _, level = _line_layer(layer.poisson_ratio, layer.share)
     many = 4 * order

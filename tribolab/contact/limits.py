@@ -12,7 +12,7 @@ from tribolab.contact.separation import Separation
 from tribolab.core.validity import LIMITS, examine, together
 from tribolab.surface.moments import rms_slope
 
-_OF_OILS = 2e-8  # 1/Pa, d ln(viscosity)/dp of mineral oils; three times that of glycerol
+_PIEZOVISCOSITY = 2e-8  # 1/Pa, d ln(viscosity)/dp of mineral oils; three times that of glycerol
 
 
 def line_limits(
@@ -40,7 +40,7 @@ def line_limits(
     Raises
     ------
     AnalysisError
-        If the contact exceeds the second limit.
+        If the contact exceeds a limit beyond which the theory is invalid.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def line_limits(
             examine(
                 who,
                 f"({1e-6 * peak:.3g} MPa at {largest:.3g} {contact.load_unit})",
-                thickening=_OF_OILS * peak,
+                thickening=_PIEZOVISCOSITY * peak,
             )
         )
         beyond = speeds[thick > LIMITS["film"].suspect]

@@ -20,8 +20,8 @@ from tribolab.core.errors import AnalysisError, Cure
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
-# The paper does not define the contact width: this pressure, relative to the maximum,
-# reproduces both printed widths.
+# Xu et al. (2026) do not define the contact width: this pressure, relative to the maximum,
+# reproduces both widths that they print.
 WIDTH_LEVEL = 1e-3
 _STEPS = 100
 _CONVERGED = 1e-10  # change in the last step over the maximum pressure
@@ -59,8 +59,8 @@ def rough_line_contact(
     xarray.Dataset
         Over ``x`` [m]: ``pressure`` [Pa], ``separation`` [m], ``contact_area_ratio`` [1]; and the
         scalars ``max_pressure`` [Pa], ``central_separation`` [m] and ``contact_width`` [m], the
-        distance between the points where pressure is 1e-3 of its maximum (inferred: the paper has
-        no definition, and this one reproduces its widths). Attributes: ``residual`` (of p - p(u),
+        distance between the points where pressure is 1e-3 of its maximum (a definition inferred
+        from the widths in [1]_). Attributes: ``residual`` (of p - p(u),
         in units of the maximum pressure), ``load_balance`` (relative) and ``steps``.
 
     Raises
@@ -69,12 +69,11 @@ def rough_line_contact(
         If the load is not positive, the surface has no roughness or is flattened (use
         `hertz_pressure`), there are fewer than 21 points, or the iteration does not converge.
 
-    Notes
-    -----
-    Eqs. (9) and (10) of [1]_ with p = p_cont(u), whose kernel is integrated exactly over each cell
-    and scaled by the width of the domain: ``u = c + x^2/(2R) + K p``, where c includes the
-    constant. The energy ``p K p / 2 + int_u^inf p_cont du`` is convex in (u, c), so Newton's method
-    with a line search on its directional derivative converges to the unique solution.
+    Notes ----- Eqs. (9) and (10) of [1]_ with p = p_cont(u): ``u = c + x^2/(2R) + K p``. The kernel
+    is integrated exactly over each cell, with lengths in units of the domain's width; the constant
+    c includes the choice of that unit. The energy ``p K p / 2 + int_u^inf p_cont du`` is convex in
+    (u, c), so Newton's method with a line search on its directional derivative converges to the
+    unique solution.
 
     References
     ----------
@@ -136,7 +135,7 @@ class LineProfile(NamedTuple):
 
 
 def solve_line(force: float, contact: LineContact, table: Separation, points: int) -> LineProfile:
-    """Return pressure and separation at a load [N/m], with a table of the contact pressure."""
+    """Return pressure and separation of a dry line contact at a load [N/m], from its table p(u)."""
     x = _cells(force, contact, table.decay_length, points)
     width = np.full(points, x[1] - x[0])
     kernel = line_kernel(x, width, contact.effective_modulus)
@@ -198,8 +197,8 @@ def contact_width(x: np.ndarray, pressure: np.ndarray, level: float = WIDTH_LEVE
 def _cells(force: float, contact: LineContact, decay_length: float, points: int) -> np.ndarray:
     """Return the centres of equal cells, up to where the pressure is 1e-12 of its maximum.
 
-    Outside the Hertz contact u increases faster than (x^2 - a^2)/2R, and p falls as exp(-u/u0): x^2
-    = a^2 + 2 R u0 ln(1e12) is sufficient.
+    Outside the Hertz contact u increases faster than (x^2 - a^2)/2R, and p falls as exp(-u/u0), so
+    that x^2 = a^2 + 2 R u0 ln(1e12) is sufficient.
     """
     a2 = hertz_half_width(force, contact) ** 2
     end = np.sqrt(max(a2 + 2 * contact.radius * decay_length * np.log(1e12), 1.44 * a2))
@@ -215,7 +214,7 @@ def solve_dry(
     table: Separation,
     kernel: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """Return p, u, steps and residual of p = p_cont(c + gap + K p), solved for a given load.
+    """Return pressure, separation, steps and residual of p = p_cont(c + gap + K p) at a load.
 
     Parameters
     ----------

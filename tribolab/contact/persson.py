@@ -41,7 +41,7 @@ def contact_area_ratio(
     effective_modulus: str | float,
     area: AreaTheory = "persson",
 ) -> Pressure:
-    """Return the relative contact area A/A0 in Persson's theory without adhesion, or corrected.
+    """Return the relative contact area A/A0 without adhesion, by Persson's or a corrected theory.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def apparent_contact_area_ratio(
 
     Notes
     -----
-    Eqs. (6) and (7) with q as the upper limit q1.
+    Eqs. (6) and (7) of `contact_area_ratio`, with q instead of the upper limit q1.
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     stiffness = modulus * np.sqrt(np.pi * cumulative(*spectrum_arrays(psd), 3))
@@ -238,10 +238,10 @@ def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, n
 
 
 def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return q and C of a spectrum without zeros at its ends, except those next to roughness.
+    """Return q and C of a spectrum, cropped to its roughness and one zero at each end.
 
-    Moments do not change, because C is linear in the bin next to a zero; this avoids 0/0 in ranges
-    without roughness, e.g. for the opening gap.
+    This avoids 0/0 in ranges without roughness, e.g. for the opening gap. Moments do not change,
+    because C is linear in the bin next to a zero.
     """
     q, spectrum = spectrum_arrays(psd)
     rough = np.flatnonzero(spectrum)
@@ -264,9 +264,9 @@ def tail(y: np.ndarray, gamma: float) -> np.ndarray:
 def coarse_tail(log_y: np.ndarray, gamma: float) -> np.ndarray:
     """Return F of `tail` at ln y, accurate to 1e-5 for y < 1; faster than `tail` in long sums."""
     values, steps, lowest, per_unit = _coarse_table(float(gamma))
-    place = np.clip((log_y - lowest) * per_unit, 0, values.size - 1)
-    cell = place.astype(np.intp)
-    return values[cell] + steps[cell] * (place - cell)
+    position = np.clip((log_y - lowest) * per_unit, 0, values.size - 1)
+    cell = position.astype(np.intp)
+    return values[cell] + steps[cell] * (position - cell)
 
 
 def tail_slope(y: np.ndarray, gamma: float) -> np.ndarray:
@@ -276,7 +276,7 @@ def tail_slope(y: np.ndarray, gamma: float) -> np.ndarray:
 
 @functools.lru_cache(maxsize=8)
 def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
-    """Return a table of ln F over ln y with exact slopes; exponential integral for gamma's term."""
+    """Return a spline of ln F over ln y with exact slopes, and its lowest and highest ln y."""
     if not 0 < gamma <= 1:
         raise AnalysisError(f"gamma: a value above 0 and at most 1 is wanted; got {gamma:g}")
     x = np.linspace(-12.0, np.log(26.0), 1601)
@@ -293,7 +293,7 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
 
 @functools.lru_cache(maxsize=8)
 def _coarse_table(gamma: float) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Return F and its differences at equal steps of ln y; constant below, 0 above the table."""
+    """Return F and its differences at equal steps of ln y, the lowest ln y and 1/step."""
     x, step = np.linspace(-25.0, np.log(26.0), 14001, retstep=True)
     values = np.append(tail(np.exp(x[:-1]), gamma), 0.0)
     return values, np.diff(values, append=0.0), float(x[0]), float(1 / step)

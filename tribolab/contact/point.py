@@ -81,8 +81,8 @@ def rough_point_contact(
 
     Notes
     -----
-    ``u = c + r^2/(2R) + (1/pi E*) int p dA/|r - r'|`` with p = p_cont(u), by the same convex
-    Newton's method as for the line.
+    ``u = c + r^2/(2R) + (1/pi E*) int p dA/|r - r'|`` with p = p_cont(u), solved by the same convex
+    Newton's method as in `rough_line_contact`.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def rough_point_contact(
 def solve_rings(
     force: float, contact: PointContact, table: Separation, mesh: PolarMesh, length: float
 ) -> RoundProfile:
-    """Return the solution of `rough_point_contact` on a mesh with the unit `length` [m]."""
+    """Return pressure and separation of a dry point contact on a mesh in units of `length` [m]."""
     radius = mesh.radius * length
     area = np.pi * np.diff(mesh.faces**2) * length**2
     kernel = mesh.rings * (length / contact.effective_modulus)

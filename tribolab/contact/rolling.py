@@ -25,8 +25,8 @@ def rolling_friction(
 
     Notes
     -----
-    ``sum alpha_i s_i 3 a/(16 R)``, for a line with ``2 a/(3 pi R)``, s_i being a body's share of
-    the compliance [1]_.
+    ``sum alpha_i s_i 3 a/(16 R)`` for a ball, with ``2 a/(3 pi R)`` instead of 3 a/(16 R) for a
+    line contact; s_i is a body's share of the compliance [1]_.
 
     References
     ----------

@@ -24,7 +24,7 @@ from tribolab.units.conversion import positive
 from tribolab.units.quantities import si_values
 from tribolab.units.stamping import like
 
-_MORE_THAN_EPS = 1e-14
+_ROUNDING = 1e-14  # relative step below which Newton's method stops
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Separation:
     rms_roughness
         h_rms [m].
     decay_length
-        u0 [m] of the low-pressure asymptote p ~ exp(-u/u0); the paper's alpha is h_rms/u0.
+        u0 [m] of the low-pressure asymptote p ~ exp(-u/u0).
     effective_modulus
         E* [Pa].
     gamma
@@ -60,7 +60,7 @@ class Separation:
 
     @functools.cached_property
     def _with_slope(self) -> PPoly:
-        """Spline with two values: ln p and its slope."""
+        """Spline in U with two values: ln p and d ln p/dU."""
         curve = self._curve
         both = np.zeros((*curve.c.shape, 2))
         both[..., 0], both[1:, :, 1] = curve.c, curve.derivative().c
@@ -156,7 +156,7 @@ class Separation:
         for _ in range(12):
             step = (curve(x) - log_p) / curve(x, 1)
             x = np.clip(x - step, lower, upper)
-            if not np.any(np.abs(step) > _MORE_THAN_EPS * (1 + np.abs(x))):
+            if not np.any(np.abs(step) > _ROUNDING * (1 + np.abs(x))):
                 break
         return self.rms_roughness * np.logaddexp(0.0, x)
 
@@ -238,7 +238,7 @@ def _unit_modulus_table(
     q, spectrum = np.frombuffer(q_bytes), np.frombuffer(spectrum_bytes)
     slope, weight = slope_quadrature(q, spectrum)
     height = float(np.sqrt(2 * np.pi * cumulative(q, spectrum, 1)[-1]))
-    # from pressures at which the asymptote is accurate to 1e-6, to those with u below 1e-6 h_rms
+    # from pressures so low that the asymptote is accurate to 1e-6, to those with u < 1e-6 h_rms
     lowest = 1e-6 * min(q[0] * height, ROOT_PI * slope[-1])
     stiffness = np.concatenate(
         [

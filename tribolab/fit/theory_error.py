@@ -8,7 +8,8 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from tribolab.contact.separation import Separation
-from tribolab.lubrication.factors import FactorTable, FlowFactors
+from tribolab.lubrication.factor_table import FactorTable
+from tribolab.lubrication.factors import FlowFactors
 
 EXCESS_OF_SHEAR = 0.24  # largest excess of phi_f over numerical results, from 2 to 3.2 h_rms
 LACK_OF_PRESSURE = 0.17  # largest lack of p(u) relative to numerical results, below _CLOSE

@@ -18,7 +18,7 @@ from tribolab.lubrication.parameters import Liquid
 
 _INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in units of the reach (see `layout`)
 _CLASS_RATIO = 100.0  # films whose thicknesses differ by less than this factor share a mesh
-_FINE_EDGE, _EXTRA_CELLS = 5e-3, 0.3  # edge width below which cells are added, share per decade
+_FINE_EDGE, _EXTRA_CELLS = 5e-3, 0.3  # edge width below which cells are added; share per decade
 SHORTEST = 1.5  # least distance from the middle to the start of the liquid, in half-widths
 
 
@@ -39,9 +39,9 @@ def layout(
     Parameters
     ----------
     film
-        Expected film thickness over the gap g = b^2/(2R).
+        Expected film thickness, divided by the gap scale g = b^2/(2R).
     decay
-        Decay length of the contact pressure with the film, over g.
+        Length over which the contact pressure decays with the film, divided by g.
     domain
         Length of the domain relative to the default.
     inlet_length
@@ -71,7 +71,7 @@ def layout(
 
 
 def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
-    """Return the film thickness [m] of smooth surfaces: the larger of the soft and rigid limits.
+    """Return the film thickness [m] of smooth surfaces: the larger of the soft and rigid limit.
 
     Notes
     -----
@@ -84,7 +84,7 @@ def film_estimate(contact: LineContact, viscosity: float, load: float, speed: fl
 
 
 def thinned_film(contact: LineContact, liquid: Liquid, load: float, speed: float) -> float:
-    """Return `film_estimate` [m] for the viscosity at the film's own shear rate."""
+    """Return the film thickness [m] of smooth surfaces, with shear thinning in the film."""
     film = film_estimate(contact, liquid.viscosity, load, speed)
     if liquid.thinning is None or not speed:
         return film
@@ -180,8 +180,8 @@ def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
     ends = [(-start, film[0] - mesh.x[0] ** 2)] if np.isinf(problem.inlet_length) else []
     if problem.cavity < 0:
         ends.append((end, film[-1] - mesh.x[-1] ** 2))
-    for place, constant in ends:
-        first, second = (_tail(n, place, constant) for n in (1, 2))
+    for distance, constant in ends:
+        first, second = (_tail(n, distance, constant) for n in (1, 2))
         couette, pressure = couette + first, pressure + 3 * (first - full * second)
     if problem.cavity == 0 and fields.front < film.size:
         couette += full * _tail(2, end, film[-1] - mesh.x[-1] ** 2)

@@ -5,19 +5,21 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 from scipy.special import erfinv
 
-from tribolab.contact.gap import COMPLETE, gap_distributions
+from tribolab.arrays.broadcasting import over_dims
+from tribolab.contact.gap import COMPLETE
 from tribolab.contact.persson import rough_band
-from tribolab.contact.separation import Separation, separation_table
+from tribolab.contact.separation import separation_table
 from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.core.validity import examine, together
+from tribolab.lubrication.effective_medium import medium_averages
+from tribolab.lubrication.factor_table import FactorTable
 from tribolab.surface.moments import cumulative, rms_roughness, rms_slope, spectrum_arrays
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
@@ -33,8 +35,8 @@ FACTORS = (
     "pressure_stress_factor",
 )
 
-# Range of the table: u - u_c from _NEAR to _FAR h_rms above percolation (beyond, the grid of gaps
-# is too coarse for their distribution), and down to _LOW h_rms below percolation.
+# Separations in the table: above percolation, u - u_c from _NEAR to _FAR times h_rms (the grid of
+# gaps is too coarse for larger ones); below percolation, u down to _LOW times h_rms.
 _NEAR, _FAR, _LOW, _POINTS = 1e-5, 8.0, 1e-3, 64
 
 
@@ -65,8 +67,8 @@ class FlowFactors:
     model
         Source of the factors, for the attributes of results.
     flow, friction
-        Tables for a rough body at rest, of phi_p and (u + h_rms phi_s)/u; and of phi_f, phi_fs and,
-        if not given by reciprocity, phi_fp. None if smooth.
+        Tables for a rough body at rest: `flow` of phi_p and (u + h_rms phi_s)/u, `friction` of
+        phi_f, phi_fs and, if it does not follow from reciprocity, phi_fp. None if smooth.
     limits
         Attributes of `tribolab.core.validity`: whether the slopes are small enough for thin-film
         flow.
@@ -74,7 +76,7 @@ class FlowFactors:
         (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster; None: from
         `rough_body`.
     slide
-        Half of the slide-roll ratio [1], 1 if one body is at rest: factor of phi_s.
+        Half the slide-roll ratio [1], by which phi_s is multiplied; 1 if one body is at rest.
     """
 
     rms_roughness: float
@@ -97,7 +99,7 @@ class FlowFactors:
         phi_f, phi_fs, *phi_fp = self.friction(u)[0]
         phi_s = self._sign * self.slide * u / self.rms_roughness * (1 - open_flow)
         drag = phi_fp[0] if phi_fp else open_flow
-        # if the rough body moves, the pressure gradient drags it with the remainder of u dp/dx
+        # both bodies together carry the drag u dp/dx; if the rough one moves, it carries the rest
         return Factors(phi_p, phi_s, phi_f, phi_fs, (1 + self._sign) - self._sign * drag)
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -105,7 +107,7 @@ class FlowFactors:
         if self.flow is None:
             return np.ones_like(u), np.zeros_like(u), u, np.ones_like(u)
         (phi_p, part), (phi_p_slope, part_slope) = self.flow(u)
-        # (u + h_rms phi_s)/u is phi_fp, or 2 - phi_fp if the rough body moves
+        # by reciprocity, (u + h_rms phi_s)/u is phi_fp, or 2 - phi_fp if the rough body moves
         carried = self._sign * self.slide
         share, rate = (1 + carried) - carried * part, -carried * part_slope
         return phi_p, phi_p_slope, u * share, share + u * rate
@@ -132,7 +134,7 @@ class FlowFactors:
         )
 
     def relative_viscosity(self, separation: np.ndarray) -> np.ndarray:
-        """Return the viscosity relative to that at rest [1] at separations [m]; 1 if Newtonian."""
+        """Return the viscosity at separations [m], relative to that at zero shear rate: 1 here."""
         return np.ones_like(separation)
 
     @property
@@ -185,7 +187,7 @@ def flow_factors(
     - phi_p = s_e/u^3 (pressure flow),
     - phi_fp = u_e/u, u_e = d s_e <u/D> (drag by the pressure gradient),
     - phi_s = -(u/h_rms) (1 - phi_fp) (shear flow; the sign is that of `rough_body`),
-    - phi_fs = 3 u <u (u - u_e)/D> (drag by roughness-born pressure),
+    - phi_fs = 3 u <u (u - u_e)/D> (drag by the pressure that roughness generates),
     - phi_f = u <1/u>,
 
     u being the mean. Onsager's reciprocity, (u + h_rms phi_s)/u = phi_fp for a rough body at rest,
@@ -244,7 +246,7 @@ def _tabulated(
     slope = np.sqrt(cumulative(*spectrum_arrays(psd), 3)[-1])
     closing = float(pressure_of.separation(float(np.sqrt(np.pi) * slope * erfinv(percolation))))
     above = closing + height * np.geomspace(_NEAR, _FAR, _POINTS)
-    # contact counts as complete at separations below a hundredth of the cut-off
+    # the contact is treated as complete at separations below a hundredth of the cut-off
     lowest = max(min(_LOW * height, closing / 3), 2 * COMPLETE * cutoff)
     if lowest > closing / 2:
         raise AnalysisError(
@@ -253,7 +255,7 @@ def _tabulated(
             cure=Cure(notebook="take the surface for smooth, psd=None, or a smaller cut-off"),
         )
     below = np.geomspace(lowest, closing, _POINTS // 3)
-    conductance, entrained, correction, inverse = _averages(
+    conductance, entrained, correction, inverse = medium_averages(
         np.concatenate([below, above]), pressure_of, psd, percolation, cutoff, gamma
     )
     first = below.size
@@ -289,108 +291,47 @@ def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
     return FlowFactors(0.0, 0.0, rough_body, "smooth")
 
 
-@dataclass(frozen=True, eq=False)
-class FactorTable:
-    """Table of factors: cubics of ln phi over ln(u - origin), with asymptotes at both ends.
+@over_dims(psd=("wavenumber",))
+def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> xr.Dataset:
+    """Return flow and friction factors over the mean separation in units of the rms roughness.
 
-    The cubics are monotone, or splines if the factors are known to be smooth.
+    Parameters
+    ----------
+    psd
+        Power spectrum with ``psd_2d`` [m4] (wavenumber); a spectrum with a further dim, such as
+        ``surface``, gives factors with that dim.
+    over
+        Mean separation over rms roughness [1].
+    **options
+        Further arguments of `flow_factors`.
 
-    Beyond the last node phi = limit + A(u)/u^2, where A approaches its known value as 1/u^2; below
-    the first node the power law of the first cell is extrapolated.
+    Returns
+    -------
+    xarray.Dataset
+        The five factors of `flow_factors` [1] and ``separation`` [m], over
+        ``relative_separation`` [1].
+
+    Raises
+    ------
+    AnalysisError
+        As `flow_factors`, and if a separation is not above zero.
+
+    Examples
+    --------
+    >>> from tribolab.studies import xu2026
+    >>> found = relative_flow_factors(xu2026.psd(["Smooth", "Sb-S"], points=301), [0.5, 2.0])
+    >>> found.pressure_flow_factor.dims
+    ('surface', 'relative_separation')
+    >>> found.pressure_flow_factor.values.round(2).tolist()
+    [[0.07, 0.68], [0.07, 0.68]]
     """
-
-    u: np.ndarray
-    values: np.ndarray  # values at the nodes (factor, u)
-    origin: float
-    coefficient: np.ndarray  # factor of 1/u^2 at large u (factor)
-    limit: np.ndarray  # value at large u (factor)
-    smooth: bool = False
-    _curve: PPoly = field(init=False, repr=False)  # two values: ln phi, and its slope (2, factor)
-
-    def __post_init__(self) -> None:
-        """Compute the interpolating curve."""
-        cubic = CubicSpline if self.smooth else PchipInterpolator
-        curve = cubic(np.log(self.u - self.origin), np.log(self.values), axis=1)
-        both = np.zeros((*curve.c.shape[:2], 2, len(self.values)))
-        both[:, :, 0], both[1:, :, 1] = curve.c, curve.derivative().c
-        object.__setattr__(self, "_curve", PPoly(both, curve.x))
-
-    def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return factors and their slopes over u, each (factor, shape of u)."""
-        distance = np.maximum(u - self.origin, 0)
-        first, last = self._curve.x[0], self._curve.x[-1]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            log_u = np.log(distance)
-            curve = self._curve(np.minimum(np.maximum(log_u, first), last))
-            log_value, rate = curve.transpose(-2, -1, *range(u.ndim))
-            if np.any(log_u < first):
-                log_value = log_value + rate * np.maximum(np.minimum(log_u - first, 0), -1e3)
-            value = np.exp(log_value)
-            slope = value * rate / distance
-            if np.any(distance == 0):
-                value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # at u = origin
-                slope = np.where(distance > 0, slope, 0.0)
-            end = self.u[-1]
-            beyond = u > end
-            if not np.any(beyond):
-                return value, slope
-            shape = (-1,) + (1,) * np.ndim(u)
-            c, limit = self.coefficient.reshape(shape), self.limit.reshape(shape)
-            excess = ((self.values[:, -1].reshape(shape) - limit) * end**2 - c) * end**2
-            part, rest = c / u**2, excess / u**4
-            far, far_slope = limit + part + rest, -(2 * part + 4 * rest) / u
-        return np.where(beyond, far, value), np.where(beyond, far_slope, slope)
-
-
-def _averages(
-    u: np.ndarray,
-    pressure_of: Separation,
-    psd: xr.Dataset,
-    percolation: float,
-    cutoff: float,
-    gamma: float,
-) -> tuple[np.ndarray, ...]:
-    """Return phi_p, phi_fp, phi_fs and phi_f at mean separations u, as averages over P(u)."""
-    pressure = pressure_of.pressure(u)
-    flow, plain = gap_distributions(pressure, psd, 1.0, ("flow", "plain"), gamma, cutoff, points=8)
-    gap, weight = flow["gap"].values, flow["gap_weight"].values
-    touching = flow["contact_area_ratio"].values
-    # normalise by the quadrature's own sums, so that their errors cancel in phi - 1
-    total = weight.sum(axis=1) + touching
-    weight, touching = weight / total[:, None], touching / total
-    mean = weight @ gap
-    dimension = 1 / (1 - percolation)
-    conductance = _effective(gap**3, weight, touching, dimension)
-    denominator = gap**3 + (dimension - 1) * conductance[:, None]
-    entrained = dimension * conductance * (weight * gap / denominator).sum(axis=1)
-    # gaps below the cut-off contain no fluid; the conductance D is u^3 below percolation
-    fluid = np.where(gap >= cutoff, weight, 0.0)
-    moved = gap * (gap - entrained[:, None]) / denominator
-    correction = 3 * mean * (fluid * moved).sum(axis=1)
-    wide, share = plain["gap"].values, plain["gap_weight"].values
-    share = share / (share.sum(axis=1) + plain["contact_area_ratio"].values)[:, None]
-    inverse = (share @ wide) * np.where(wide >= cutoff, share / wide, 0.0).sum(axis=1)
-    return conductance / mean**3, entrained / mean, correction, inverse
-
-
-def _effective(
-    local: np.ndarray, weight: np.ndarray, touching: np.ndarray, dimension: float
-) -> np.ndarray:
-    """Return the conductivity s_e of the medium from 1 = <d s_e/D>; 0 if the contact percolates."""
-
-    def excess(log_s: np.ndarray) -> np.ndarray:
-        s = np.exp(log_s)[:, None]
-        part = (weight * dimension * s / (local + (dimension - 1) * s)).sum(axis=1)
-        return part + touching * dimension / (dimension - 1) - 1
-
-    low = np.full(touching.shape, np.log(local[0]) - 60.0)
-    high = np.full(touching.shape, np.log(local[-1]))
-    opens = touching < (dimension - 1) / dimension
-    for _ in range(70):
-        middle = (low + high) / 2
-        above = excess(middle) > 0
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
-    return np.where(opens, np.exp((low + high) / 2), 0.0)
+    table = flow_factors(psd, **options)
+    relative = np.atleast_1d(np.asarray(over, float))
+    separation = xr.DataArray(
+        relative * table.rms_roughness, {"relative_separation": relative}, "relative_separation"
+    )
+    factors = table.dataset(separation).reset_coords("separation")
+    return stamp(factors, **{k: v for k, v in factors.attrs.items() if not k.endswith("_m")})
 
 
 def check_rough_body(rough_body: str) -> None:

@@ -127,7 +127,7 @@ def _profile(
 def _centre_line(
     point: SolvedSpeed | SolvedPoint,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
-    """Return x [m], film [m], both pressures [Pa] and start of the cavity on the centre line."""
+    """Return x [m], film [m], contact and fluid pressure [Pa] and the first index in the cavity."""
     parts: tuple[np.ndarray, ...]
     if isinstance(point, SolvedSpeed):
         line, fields = point.problem, point.solution.fields

@@ -23,8 +23,8 @@ def friction_parts(system: System, rough: FluidFriction, plain: FluidFriction) -
 
     Notes
     -----
-    If both bodies move, shear friction is half the difference between both signs of the slide-roll
-    ratio; the drag of the pressure is rolling friction.
+    If both bodies move, shear friction is half the difference between the drags at positive and
+    negative slide-roll ratio; the drag by pressure is rolling friction and not included.
     """
     couette, pressure = rough if system.solver.friction_factors else plain
     slide, rolls = abs(system.factors.slide), system.rolls

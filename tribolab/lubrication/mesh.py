@@ -46,7 +46,8 @@ def graded_mesh(
         Number of cells.
     edge
         Length over which the film rises at the contact's edge, in units of size b. Cells are finest
-        there: with 160 cells, a sixth to a third of it at the outlet and twice that at the inlet.
+        there: with 160 cells, they are a sixth to a third of it at the outlet, twice that at the
+        inlet.
     inlet, outlet
         Ends of the domain: -inlet, outlet, in units of b.
     size

@@ -12,7 +12,7 @@ from tribolab.lubrication.flow import Flow, flow_between, flux_slopes
 from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
-_STEPS = 30
+_STEPS = 30  # largest number of Newton steps
 _MAX_CHANGE = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-9  # largest error relative to the maximum pressure, and to the load
 _REUSE = 1e-5  # residual below which the last step's matrix is used again
@@ -113,7 +113,7 @@ def couette_number(problem: Problem, viscosity: float, speed: float) -> float:
 
 
 def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
-    """Return the solution of Eqs. (3), (5), (9), (10) with cavitation at one speed.
+    """Return film, pressures and flux of a line contact at one speed, by Newton's method.
 
     Parameters
     ----------
@@ -131,19 +131,19 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
 
     Notes
     -----
-    Unknowns are the film u in the cells and the constant of Eq. (9); the pressure is
-    ``p = K^-1 (u - c - x^2)``, the fluid's part p - p_cont(u). A cell's equation is div J = 0 up to
-    the rupture of the film and p_fluid = 0 behind it, the solution of ``p_fluid >= 0``,
-    ``div J >= 0``, ``p_fluid div J = 0`` if the film grows towards the outlet. The position of
-    rupture follows exactly from each film (`_rupture`), so that the front moves over any distance
-    in one step, not by one cell per step.
+    Eqs. (3), (5), (9) and (10) of Xu et al. (2026), with cavitation. Unknowns are the film u in the
+    cells and the constant c of Eq. (9); the pressure is ``p = K^-1 (u - c - x^2)``, that of the
+    fluid p - p_cont(u). In each cell div J = 0 up to the rupture of the film, and p_fluid = 0
+    behind it. If the film thickens towards the outlet, this is also the solution of
+    ``p_fluid >= 0``, ``div J >= 0``, ``p_fluid div J = 0``. The point of rupture follows exactly
+    from each film (`_rupture`), so that it can move over many cells in one step.
     """
     state, before, solver = start, np.inf, None
     for step in range(_STEPS + 1):
         film = _film(problem, couette, state)
         error = max(film.error, film.lacking)
         if error < _CONVERGED or (error < _ROUNDING and error > before / 2):
-            return _proof(problem, couette, state, film, step)
+            return _checked_solution(problem, couette, state, film, step)
         if step == _STEPS or not np.isfinite(error):
             break
         if solver is None or error > min(_REUSE, before / 10):
@@ -164,7 +164,7 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     contact, yielding = _contact(problem, u)
     total = state.pressure
     fluid = total - contact
-    # flux between cells = entrainment - conductance x pressure difference; p = 0 outside
+    # flux between cells = entrainment - conductance x pressure rise; p = 0 outside the domain
     flow = flow_between(mesh.between, problem.moving(couette), problem.gap, couette, u)
     conductance, entrained = flow.conductance, flow.drive
     rise = np.empty_like(conductance)
@@ -212,7 +212,7 @@ def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _deficit(problem: Problem, film: _Film) -> np.ndarray:
-    """Return the negative residuals, the last one that of the load."""
+    """Return the negative residuals of the cells, followed by that of the load balance."""
     lack = problem.mesh.weight @ film.total - problem.load
     return -np.append(film.residual, film.total.max() / problem.load * lack)
 
@@ -266,7 +266,7 @@ def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
 def _rupture(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """Return the first cell of the cavity, the first cell behind it, and the flux, for one film.
+    """Return the cavity's first cell, the first cell behind it, and the flux, if vented.
 
     With full cells 0 ... k - 1 and p = 0 at both ends, the flux J_k is the mean entrained flux,
     weighted with the resistance of the faces 0 ... k. The film ruptures at the first k beyond which
@@ -282,11 +282,11 @@ def _rupture(
 def _cavity(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """Return first cell of the cavity, first cell behind it, and flux, if the liquid bears tension.
+    """Return the cavity's first cell, the first cell behind it, and the flux, if flooded.
 
-    Without a cavity the flux is the mean over all faces. If the pressure would fall below the
-    lowest, the film ruptures as in `_rupture`, but at that pressure. It forms again in the first
-    cell beyond which the pressure at the same flux stays above.
+    Without a cavity the flux is the mean over all faces. If the pressure would fall below
+    `lowest`, the film ruptures as in `_rupture`, but at that pressure. It re-forms in the first
+    cell where the pressure, integrated from the outlet at the same flux, reaches `lowest`.
     """
     n, resistance = entrained.size - 1, 1 / conductance
     driven, resisted = np.cumsum(entrained * resistance), np.cumsum(resistance)
@@ -312,8 +312,10 @@ def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return pressure / problem.pressure, slope * problem.gap / problem.pressure
 
 
-def _proof(problem: Problem, couette: float, state: State, film: _Film, step: int) -> Solution:
-    """Return the checked solution; tension in the fluid or a film that re-forms is rejected."""
+def _checked_solution(
+    problem: Problem, couette: float, state: State, film: _Film, step: int
+) -> Solution:
+    """Return the solution; an error if the fluid bears tension or the film re-forms."""
     fields = film.fields
     carried = fields.contact + fields.fluid
     highest = carried.max()
@@ -336,7 +338,7 @@ def _proof(problem: Problem, couette: float, state: State, film: _Film, step: in
 
 
 def _flux_variation(fields: Fields, flow: Flow) -> float:
-    """Return the relative variation of the flux over the full film, from film and pressure."""
+    """Return the largest relative error of the flux in the full film, from film and pressure."""
     if fields.front < 2:
         return 0.0
     flux = (flow.drive[1:-1] - flow.conductance[1:-1] * np.diff(fields.fluid))[: fields.front]

@@ -56,8 +56,8 @@ def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
 def curved_weights(x: np.ndarray, width: np.ndarray) -> np.ndarray:
     """Return weights (n) of the values at cell centres, for integrals over all cells.
 
-    A cell has the parabola through its centre and the neighbouring ones; the outermost are
-    constant.
+    Within a cell, values follow the parabola through its centre and the two neighbouring ones;
+    in the outermost cells they are constant.
     """
     weight = width.copy()
     for shift, _, curve in _parabolas(x):
@@ -69,8 +69,8 @@ def curved_weights(x: np.ndarray, width: np.ndarray) -> np.ndarray:
 def curved_kernel(x: np.ndarray, width: np.ndarray) -> np.ndarray:
     """Return the displacement at x_i due to unit pressure at x_j (n, n), for E* = 1.
 
-    As `line_kernel`, but the pressure of a cell is the parabola through its centre and the
-    neighbouring ones, constant in the outermost cells.
+    As `line_kernel`, but the pressure in a cell follows the parabola through the values at its
+    centre and the two neighbouring ones; it is constant in the outermost cells.
     """
     kernel = line_kernel(x, width, 1.0)
     first, second = _moments(x, width)
@@ -81,7 +81,7 @@ def curved_kernel(x: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def _parabolas(x: np.ndarray) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """Return the weights of three cells in the slope and curvature at inner centres (n - 2)."""
+    """Return, for each of three cells, its offset and weights in slope and curvature (n - 2)."""
     before, after = x[1:-1] - x[:-2], x[2:] - x[1:-1]
     both = before + after
     return [
@@ -120,7 +120,7 @@ def _antiderivatives(t: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarra
 
 
 def lowest(x: np.ndarray, values: np.ndarray) -> float:
-    """Return the minimum of a function between cell centres, by a quartic through five values."""
+    """Return the minimum of a function given at cell centres, by a quartic through five values."""
     middle = min(max(int(np.argmin(values)), 2), x.size - 3)
     around = slice(middle - 2, middle + 3)
     fine = np.linspace(x[middle - 1], x[middle + 1], _FINE)
@@ -128,7 +128,7 @@ def lowest(x: np.ndarray, values: np.ndarray) -> float:
 
 
 def value_at(x: np.ndarray, values: np.ndarray, at: float) -> float:
-    """Return the value of a function anywhere in the cells, by the cubic through four centres."""
+    """Return a function given at cell centres, interpolated by a cubic at one position."""
     after = min(max(int(np.searchsorted(x, at)), 2), x.size - 2)
     around = slice(after - 2, after + 2)
     return float(_polynomial(x[around], values[around], np.array([at]))[0])

@@ -39,10 +39,10 @@ class Liquid:
     Parameters
     ----------
     viscosity
-        eta [Pa s]; for a shear-thinning liquid eta_0, at rest.
+        eta [Pa s]; for a shear-thinning liquid eta_0, at zero shear rate.
     extent
-        Distance from the contact's middle at which the liquid begins [m], for a ball at which it
-        ends. None: everywhere for a line contact, the ball's radius for a ball.
+        Distance [m] from the contact's middle at which the liquid begins; for a ball, at which it
+        ends. None: liquid everywhere for a line contact, up to the ball's radius for a ball.
     outlet
         ``"vented"`` if gas enters the diverging gap, which is then at ambient pressure;
         ``"flooded"`` if not, and the liquid sustains tension down to `cavity_pressure`.
@@ -97,7 +97,7 @@ class Interface:
         (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster one: -1 if only the
         slower body is rough, 1 if only the faster one is. None: from `rough_body`.
     factors, separation
-        Factors used instead of the effective-medium ones, and p(u) instead of Persson's.
+        Factors used instead of those of effective-medium theory, and p(u) instead of Persson's.
     work_of_adhesion
         Work of adhesion of the bodies in the liquid [J/m2]: adhesion then increases the contact
         area.
@@ -105,8 +105,8 @@ class Interface:
         Slide-roll ratio SRR = (u2 - u1)/U [1] of two moving bodies, U = (u1 + u2)/2; None if one
         body is at rest (SRR = 2).
     abscissa
-        Speed of arguments and results if a slide-roll ratio is stated: ``"entrainment_speed"`` U,
-        or ``"sliding_speed"`` SRR U, as in measured curves.
+        Kind of speed in arguments and results if a slide-roll ratio is stated:
+        ``"entrainment_speed"`` U, or ``"sliding_speed"`` SRR U, as in measured curves.
 
     Examples
     --------
@@ -147,7 +147,7 @@ class Interface:
 
     @property
     def entrained(self) -> float:
-        """Twice the entrainment speed, relative to the given speed [1]."""
+        """Ratio [1] of twice the entrainment speed to the speed used in arguments."""
         if self.slide_roll is None:
             return 1.0
         return 2.0 if self.abscissa == "entrainment_speed" else 2 / abs(self.slide_roll)
@@ -160,7 +160,7 @@ class Solver:
     Parameters
     ----------
     cells
-        Cells across a line contact; a round one has three eighths as many rings.
+        Cells across a line contact; a point contact has three eighths as many rings.
     domain
         Length of a line contact's domain relative to the default.
     gamma
@@ -227,7 +227,7 @@ def parameters_of(
     solver
         None: the default.
     **options
-        Single parameters by the names of their fields, or ``inlet_length``.
+        Single fields of the three objects by name; ``inlet_length`` means `extent`.
 
     Examples
     --------
@@ -257,7 +257,7 @@ def as_stated(value: Any) -> Any:
 
 
 def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a decorator that also accepts the argument names of the last release."""
+    """Return a decorator for functions that also accept argument names of the last release."""
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         @functools.wraps(function)

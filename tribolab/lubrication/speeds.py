@@ -28,7 +28,7 @@ from tribolab.lubrication.sweep import (
     wet_state,
 )
 
-_THICK_FILM_RATIO = 10.0  # ratio of speeds above which a thick film is solved without continuation
+_THICK_FILM_RATIO = 10.0  # ratio of successive speeds above which thick films are solved afresh
 
 
 class System(NamedTuple):
@@ -45,13 +45,13 @@ class System(NamedTuple):
 
     @property
     def line(self) -> LineContact:
-        """Contact, which must be a line contact."""
+        """The contact, for code that is valid for line contacts only."""
         assert isinstance(self.contact, LineContact)
         return self.contact
 
     @property
     def viscosity(self) -> float:
-        """Return the viscosity at rest [Pa s]."""
+        """Zero-shear viscosity [Pa s] of the liquid."""
         return self.liquid.viscosity
 
     def film(self, force: float, speed: float) -> float:
@@ -95,8 +95,8 @@ def solve_speeds(
     system, force, speeds
         Contact system, load [N/m] and speeds [m/s].
     near
-        Solutions of a similar system, used as starting states at equal speed and mesh. The solution
-        is the same within the tolerance, in fewer steps.
+        Solutions of a similar system, used as starting states at equal speed and mesh: they save
+        steps without changing the solution.
 
     Raises
     ------

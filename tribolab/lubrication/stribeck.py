@@ -58,7 +58,7 @@ def stribeck_curve(
     solver
         `Solver`; None: the default.
     **options
-        Single fields of these three, as they were arguments in the last release.
+        Single fields of `Liquid`, `Interface` and `Solver`: arguments of the last release.
 
     Returns
     -------
@@ -71,9 +71,9 @@ def stribeck_curve(
         ``central_separation`` [m]; ``contact_area_ratio`` [1], real area over that of the Hertz
         contact, 2 a L; ``solid_load_share`` [1]; and convergence data: ``residual``,
         ``load_balance``, ``flux_variation``, ``iterations``. With a slide-roll ratio, the
-        coefficient is half of the difference between both signs of it, as mini traction machines
-        measure: Couette and solid part; ``_pressure`` is then rolling friction and not included.
-        For a ball the attribute ``method`` is the theory used.
+        coefficient is half the difference between the frictions at positive and negative ratio, as
+        mini traction machines measure it: Couette and solid part. ``_pressure`` is then rolling
+        friction and not included. For a ball the attribute ``method`` is the theory used.
 
     Raises
     ------

@@ -24,12 +24,12 @@ from tribolab.lubrication.mixed import (
 )
 from tribolab.lubrication.parameters import Liquid
 
-_SUBSTEPS = 100  # number of failed steps that are tolerated
+_SUBSTEPS = 100  # largest number of failed steps
 _FINEST = 1e-2  # smallest step in ln v
 _THICK = 5.0  # film thickness over h_rms that counts as thick
 _GROWTH = np.log(4.0)  # largest change of ln(film) in an extrapolation to the next speed
 _START_POINTS = 101  # points of the dry contact that is the start
-_DECADES = 12  # decades below a speed that are searched for one solvable from rest
+_DECADES = 12  # decades searched below the first speed for one that can be solved from rest
 
 
 def dry_state(problem: Problem, contact: LineContact, separation: Separation, load: float) -> State:
@@ -76,7 +76,7 @@ def is_thick(
 def lifted_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Return a state at one speed, started from a film much thicker than the roughness.
+    """Return the state at one speed, reached from a higher one at which the film is thick.
 
     Raises
     ------
@@ -97,11 +97,11 @@ def lifted_state(
 def wet_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Return a state between smooth surfaces at one speed, with the help of an auxiliary repulsion.
+    """Return the state of a contact that liquid separates, found with an auxiliary repulsion.
 
-    An auxiliary repulsion, which ends at a third of the expected film, acts as contact until the
-    fluid carries the load: as with roughness, increasing speed separates the bodies. It may fail
-    for films that are thin compared with the cells: then the solution starts from a higher speed.
+    The repulsion ends at a third of the expected film. It acts like asperity contact until the
+    fluid carries the load, so that increasing speed separates the bodies. If this fails because
+    the film is thin compared with the cells, the solution starts from a higher speed.
 
     Raises
     ------
@@ -165,10 +165,10 @@ def sweep(
     speeds
         [m/s], increasing, above zero.
     start
-        Starting state: the dry contact, or the state at the first speed; None without a start.
+        Starting state: the dry contact, or the state at the first speed; None: use `lifted`.
     lifted
-        Function that returns a guess at the last speed. If the contact percolates, increasing speed
-        lifts it suddenly: the higher speeds are then solved from the last one downwards.
+        Function that returns a state at the last speed. If closed flow channels make increasing
+        speed lift the contact suddenly, the other speeds are solved from the last one downwards.
 
     Raises
     ------
@@ -280,7 +280,10 @@ def _shift_state(
 
 
 def _extrapolation(at: list[float], aim: float) -> list[float]:
-    """Return weights of the last solutions: parabola for similar steps, else secant or the last."""
+    """Return the weights of the last solutions in an extrapolation to ln v = `aim`.
+
+    A parabola if the last steps in ln v are similar, else a secant, or the last solution.
+    """
     if len(at) < 2 or at[-1] == at[-2]:
         return [1.0]
     step, ahead = at[-1] - at[-2], aim - at[-1]

@@ -28,7 +28,7 @@ _REFERENCE = (
 
 
 def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) -> System:
-    """Return the parameters that are common to all speeds and loads."""
+    """Return a contact system for solvers: all parameters except load and speed."""
     liquid, interface, solver = parameters
     factors, body = interface.factors, interface.rough_body
     if factors is None:
@@ -97,7 +97,7 @@ def system_attributes(system: System) -> dict[str, str | float | int]:
 
 
 def _special_attributes(system: System) -> dict[str, str | float | int]:
-    """Return attributes for non-default settings: layers, elastic counter bodies, outlets, etc."""
+    """Return attributes for settings that differ from the default, e.g. an elastic layer."""
     contact, liquid, factors = system.contact, system.liquid, system.factors
     balance = factors.roughness_balance
     settings = {
@@ -119,7 +119,7 @@ def with_adhesion(
     if work_of_adhesion is None or system.psd is None:
         return system
     modulus = _stiffness(system)
-    # the peak pressure with a film slightly exceeds the Hertz pressure
+    # margin: with a liquid film the peak pressure slightly exceeds the Hertz pressure
     highest = 1.5 * float(hertz_max_pressure(highest_load, system.contact))
     return system._replace(growth=adhesive_growth(system.psd, modulus, work_of_adhesion, highest))
 

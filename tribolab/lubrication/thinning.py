@@ -19,7 +19,7 @@ _STEP = 1e-4  # step in ln(rate) for derivatives
 
 @dataclass(frozen=True)
 class ShearThinning:
-    """Viscosity over shear rate, relative to the viscosity at rest.
+    """Viscosity as a function of shear rate, relative to the zero-shear viscosity.
 
     Made by `carreau_yasuda`, `cross`, `power_law` or `rheometer_table`.
 
@@ -41,23 +41,23 @@ class ShearThinning:
     curve: Callable[[np.ndarray], np.ndarray] = field(repr=False)
 
     def __call__(self, rate: np.ndarray) -> np.ndarray:
-        """Return the viscosity at shear rates [1/s], relative to that at rest."""
+        """Return the viscosity at shear rates [1/s], relative to the zero-shear viscosity."""
         return np.asarray(self.curve(np.maximum(np.abs(rate), 1e-30)))
 
     def tangent(self, rate: np.ndarray) -> np.ndarray:
-        """Return d tau/d rate at shear rates [1/s], relative to the viscosity at rest."""
+        """Return d tau/d rate at shear rates [1/s], relative to the zero-shear viscosity."""
         up, down = (self(rate * np.exp(s)) for s in (_STEP, -_STEP))
         exponent = np.log(up / down) / (2 * _STEP)
         return np.asarray(self(rate) * np.maximum(1 + exponent, 1e-3))
 
     def pressure_flow(self, rate: np.ndarray) -> np.ndarray:
-        """Return the viscosity for pressure flow superposed on shear, relative to that at rest.
+        """Return the relative viscosity for pressure-driven flow in a liquid sheared at a rate.
 
         Notes
         -----
-        The viscosity is eta for a gradient across the shear, and eta_t = d tau/d rate along it. The
-        film with ``eta_p = (eta eta_t^2)^(1/3)`` is within 1 % of that of the exact plane flow
-        above 1 mm/s, and within 3 % at 10 um/s.
+        The viscosity is eta for a pressure gradient across the shear, and eta_t = d tau/d rate for
+        one along it. Films computed with ``eta_p = (eta eta_t^2)^(1/3)`` agree with the exact plane
+        flow within 1 % above 1 mm/s, and within 3 % at 10 um/s.
         """
         return np.asarray(np.cbrt(self(rate) * self.tangent(rate) ** 2))
 
@@ -74,7 +74,7 @@ def carreau_yasuda(
     exponent
         n [1], 1 for a Newtonian liquid.
     transition
-        a [1]; 2 is Carreau's.
+        a [1]; 2 in Carreau's law.
     rest
         r = eta_inf/eta_0 [1].
     """
@@ -107,7 +107,7 @@ def power_law(rate: str | float, exponent: float) -> ShearThinning:
 
 
 def rheometer_table(rate: ArrayLike, viscosity: ArrayLike) -> tuple[float, ShearThinning]:
-    """Return the viscosity at rest [Pa s] and the viscosity law of a rheometer's table.
+    """Return the zero-shear viscosity [Pa s] and the viscosity law of a rheometer's table.
 
     Parameters
     ----------
@@ -136,8 +136,7 @@ def viscous_heating(
     Parameters
     ----------
     friction, load, speed
-        Fluid friction [1], mean pressure times width, i.e. load per length [N/m], and sliding
-        speed [m/s].
+        Fluid friction coefficient [1], load per length [N/m] and sliding speed [m/s].
     half_width
         Half-width of the contact [m].
     conductivity
@@ -168,7 +167,7 @@ class ThinnedFactors(NamedTuple):
         return self.factors.rms_roughness
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return `FlowFactors.transport`, with phi_p divided by the viscosity for pressure flow."""
+        """Return `FlowFactors.transport` with phi_p divided by the relative viscosity."""
         phi, slope, entrained, entrained_slope = self.factors.transport(u)
         rate = self.sliding / u
         thin = self.law.pressure_flow(rate)
@@ -182,7 +181,7 @@ class ThinnedFactors(NamedTuple):
         return factors._replace(phi_f=factors.phi_f * thin, phi_fs=factors.phi_fs * thin)
 
     def relative_viscosity(self, separation: np.ndarray) -> np.ndarray:
-        """Return the viscosity under shear at mean separations [m], relative to that at rest."""
+        """Return the viscosity at mean separations [m], relative to the zero-shear viscosity."""
         return self.law(self.sliding / separation)
 
 

@@ -13,11 +13,11 @@ LIQUIDS = ("glycerol", "water", "silicone oil 100 cSt")
 _SYNONYMS = {"glycerine": "glycerol", "glycerin": "glycerol", "silicon oil": "silicone oil"}
 _OIL = re.compile(r"silicone oil[ _]*(\d+(?:\.\d+)?) *(?:cst|mm2/s|mm²/s)?$")
 _ZERO = 273.15  # 0 degrees Celsius in K
-_HIGHEST = {"water": 100.0, "glycerol": 100.0, "silicone oil": 150.0}  # limits, degrees Celsius
-# Relative standard uncertainty of the formulas, which includes the grades of oils
+_HIGHEST = {"water": 100.0, "glycerol": 100.0, "silicone oil": 150.0}  # upper limits, degrees C
+# Relative standard uncertainty of the formulas; for oils it includes that of their grade
 _FORMULA = {"water": 0.01, "glycerol": 0.02, "silicone oil": 0.03}
-# Silicone oils: viscosity at 25 degrees Celsius [mm2/s]; density there relative to
-# water; relative decrease of the viscosity from 37.8 to 98.9 degrees Celsius [2]_
+# Silicone oils: viscosity at 25 degrees Celsius [mm2/s], density at 25 degrees relative to water,
+# relative decrease of the viscosity from 37.8 to 98.9 degrees Celsius (ref. 2)
 _OILS = (
     (1.0, 0.818, 0.37),
     (2.0, 0.873, 0.48),
@@ -54,7 +54,7 @@ class Viscosity(NamedTuple):
     formula: float
 
     def uncertainty(self, temperature: float = 0.0, water_content: float = 0.0) -> float:
-        """Relative standard uncertainty of the viscosity [1].
+        """Return the relative standard uncertainty of the viscosity [1].
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ def _silicone_oil(nominal: float, kelvin: float) -> Viscosity:
 
 
 def _grade_data(nominal: float) -> tuple[float, float]:
-    """Return the relative density and temperature dependence of viscosity for a silicone oil."""
+    """Return the relative density of a silicone oil and its viscosity decrease from 38 to 99 °C."""
     for low, high in zip(_OILS, _OILS[1:], strict=False):
         if low[0] <= nominal <= high[0]:
             part = math.log(nominal / low[0]) / math.log(high[0] / low[0])

@@ -29,7 +29,9 @@ def point_friction(
     drag = between / 2 * (faces.gradient @ solution.fluid) * faces.along
     moving = problem.moving(solution.couette)
     cell, face = (moving.at(u * problem.gap) for u in (film, between))
-    unit = 2 * problem.gap / (problem.radius * problem.load)  # twice the half plane
+    unit = (
+        2 * problem.gap / (problem.radius * problem.load)
+    )  # factor 2: the mesh covers half the plane
 
     def parts(sheared: float, dragged: float) -> FluidFriction:
         return FluidFriction(float(solution.couette / 6 * sheared * unit), float(dragged * unit))

@@ -14,7 +14,7 @@ from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mixed import NotConvergedError, Repulsion
 from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
-_STEPS = 25
+_STEPS = 25  # largest number of Newton steps
 _MAX_CHANGE = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-8  # largest error relative to the maximum pressure, and to the load
 _LEAK = 1e-10  # share of the smooth conductance that is kept below percolation
@@ -28,8 +28,8 @@ class Faces(NamedTuple):
     gradient: sparse.csr_matrix  # difference across each face (faces, cells)
     sides: sparse.csr_matrix  # 1 for both cells of a face (faces, cells)
     mean: sparse.csr_matrix  # mean of the two cells (faces, cells)
-    across: np.ndarray  # length of the face over the distance between its cells (faces)
-    along: np.ndarray  # int e_x.n over the face, its projected length (faces)
+    across: np.ndarray  # length of the face, divided by the distance between its cells (faces)
+    along: np.ndarray  # length of the face projected on y, positive if its normal has n_x > 0
 
 
 @functools.lru_cache(maxsize=6)
@@ -67,7 +67,7 @@ def _faces(faces: bytes, sectors: int) -> Faces:
 
 
 class PointProblem(NamedTuple):
-    """Speed-independent quantities: lengths in units of a, gaps of g = a^2/2R, pressures of P."""
+    """Properties of a point contact; units: a for lengths, g = a^2/2R for gaps, P for pressures."""
 
     mesh: PolarMesh
     factors: FlowFactors
@@ -123,7 +123,7 @@ class PointSolution(NamedTuple):
     flux: np.ndarray  # flux through the faces
     residual: float  # largest imbalance of a cell as a pressure, relative to the maximum pressure
     load_balance: float
-    flux_variation: float  # variation of the total flux over the full film, over the entrained flux
+    flux_variation: float  # largest net outflow of a cell in the full film, over the largest flux
     iterations: int
 
 
@@ -159,8 +159,8 @@ def solve_point(
     start
         State to start from.
     first
-        Whether the start has no cavity: in the first step only cells behind the middle may then
-        become cavity, otherwise the inlet would close.
+        Whether the start has no cavity. In the first step only cells behind the middle may then
+        become cavity, so that the inlet stays full.
 
     Raises
     ------
@@ -180,7 +180,7 @@ def solve_point(
         lack = float(mesh.area @ state.pressure - problem.load / 2)
         error = max(float(np.max(np.abs(now.residual))) / highest, abs(2 * lack / problem.load))
         if error < _CONVERGED:
-            return _proof(problem, couette, state, now, error, step)
+            return _solution(problem, couette, state, now, error, step)
         errors.append(error)
         if step == _STEPS or not np.isfinite(error):
             break
@@ -256,7 +256,7 @@ def _newton_step(problem: PointProblem, now: _Balance, lack: float) -> tuple[np.
     return change, float(constant)
 
 
-def _proof(
+def _solution(
     problem: PointProblem,
     couette: float,
     state: PointState,

@@ -22,12 +22,12 @@ FULL, STRIPS = "rings and sectors", "strips"
 def ball_rows(
     system: System, force: float, speeds: np.ndarray
 ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """Return the columns of a ball's curve over increasing speeds [m/s], and where strips apply.
+    """Return the columns of a ball's Stribeck curve, and a mask of the speeds solved by strips.
 
     Parameters
     ----------
     system, force, speeds
-        Contact system, load [N] and speeds [m/s].
+        Contact system, load [N] and increasing speeds [m/s].
     """
     method: Method = system.solver.method
     strips = np.zeros(speeds.size, dtype=bool)
@@ -51,9 +51,9 @@ def point_row(system: System, force: float, hertz: float, point: SolvedPoint) ->
     """Return the values of a Stribeck curve at one solved speed."""
     _, problem, solution = point
     mesh, film = problem.mesh, solution.film
-    solid, whole = areas_of(problem.pressure, solution.contact, solution.fluid)
+    solid, whole = dimensional_pressures(problem.pressure, solution.contact, solution.fluid)
     theories = (system.solver.area, alternative_area_theory(system.solver.area))
-    unit = 2 * problem.radius**2  # twice the half plane
+    unit = 2 * problem.radius**2  # factor 2: the mesh covers half the plane
     real, otherwise = (
         float(real_area(system, solid, whole, theory) @ mesh.area) * unit for theory in theories
     )
@@ -70,15 +70,15 @@ def point_row(system: System, force: float, hertz: float, point: SolvedPoint) ->
     }
 
 
-def areas_of(
+def dimensional_pressures(
     pressure: float, contact: np.ndarray, fluid: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the contact pressure and the total pressure [Pa], for computing contact areas."""
+    """Return the contact pressure and the total pressure [Pa] from dimensionless pressures."""
     return contact * pressure, (contact + fluid) * pressure
 
 
 def method_used(strips: Sequence[np.ndarray]) -> str:
-    """Return the name of the theory by which a curve was computed."""
+    """Return the name of the theory by which a ball's curve was computed: full, strips or both."""
     used = np.concatenate([np.ravel(part) for part in strips])
     if used.all():
         return STRIPS

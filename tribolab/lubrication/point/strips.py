@@ -27,7 +27,10 @@ _LEAK, _OBLIQUE = 0.88, 5 / 3  # entrainment speed of a strip, v' = 0.88 v cos^(
 
 
 def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray:
-    """Return a mask of speeds [m/s] at which strips are valid: thin film, half-space, Newtonian."""
+    """Return a mask of the speeds [m/s] at which the strip approximation is valid.
+
+    It is valid for thin films of a Newtonian liquid on a half-space.
+    """
     contact = system.contact
     if system.contact.thickness < np.inf or system.liquid.thinning or not contact.is_round:
         return np.zeros(np.shape(speed), dtype=bool)
@@ -38,7 +41,7 @@ def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray
 
 
 def strip_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[str, float]]:
-    """Return the values of a Stribeck curve at increasing speeds [m/s], from six strips.
+    """Return the values of a ball's Stribeck curve at increasing speeds [m/s], from six strips.
 
     Notes
     -----

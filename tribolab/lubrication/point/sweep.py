@@ -28,9 +28,9 @@ _SECTORS = 24
 _FAR_END, _EXTRA_RINGS = 4.0, 0.25  # extent above which rings are added, and their share per decade
 _CLASS_RATIO = 10.0  # films whose thicknesses differ by less than this factor share a mesh
 _THICK = 5.0  # film thickness over h_rms above which the solution starts from a thick film
-_LIFTED = 0.5  # film thickness at which this start is made, over the gap a^2/2R
-_GENTLE = 0.1  # fluid over contact pressure in the first step from rest
-_SUBSTEPS = 60  # number of failed steps that are tolerated
+_LIFTED = 0.5  # thickness of that thick film, divided by the gap a^2/2R
+_GENTLE = 0.1  # ratio of fluid to contact pressure in the first step from rest
+_SUBSTEPS = 60  # largest number of failed steps
 _FINEST = 1e-2  # smallest step in ln v
 SHORTEST = 1.5  # least radius of the liquid, in contact radii
 
@@ -59,7 +59,7 @@ def ball_film(contact: PointContact, viscosity: float, load: float, speed: float
 
 
 def expected_film(contact: PointContact, liquid: Liquid, load: float, speed: float) -> float:
-    """Return `ball_film` [m] for the viscosity at the film's own shear rate."""
+    """Return the central film thickness [m] of a smooth ball, with shear thinning in the film."""
     film = ball_film(contact, liquid.viscosity, load, speed)
     if liquid.thinning is None or not speed:
         return film
@@ -141,7 +141,7 @@ def solve_points(system: System, force: float, speeds: np.ndarray) -> list[Solve
 def _solve_thick(
     system: System, force: float, speeds: list[float]
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
-    """Return solutions at speeds above and below that of a thick film, and a failure if any."""
+    """Return solutions at speeds, started from a thick film, and the error if one fails."""
     contact = _ball(system)
     a = float(hertz_half_width(force, contact))
     wanted = max(_LIFTED * a**2 / (2 * contact.radius), _THICK * system.factors.rms_roughness)
@@ -221,7 +221,7 @@ def carried_state(
 def _predicted(
     problem: PointProblem, known: list[tuple[float, PointState]], state: PointState, aim: float
 ) -> PointState:
-    """Return the secant prediction from two solutions; no film changes by more than 60 %."""
+    """Return a starting state extrapolated from two solutions; films change by at most 60 %."""
     if len(known) < 2 or known[-1][0] == known[-2][0]:
         return state
     (before, old), (at, new) = known[-2:]
@@ -245,7 +245,7 @@ def _dry_start(system: System, force: float) -> tuple[PointProblem, PointState]:
 
 
 def _gentle_speed(problem: PointProblem, dry: PointSolution, system: System) -> float:
-    """Return the speed [m/s] at which the fluid pressure is small relative to the contact's."""
+    """Return a speed [m/s] at which the fluid pressure is small next to the contact pressure."""
     thinnest = float(dry.film.min())
     phi = float(problem.moving(0.0).transport(np.array([thinnest * problem.gap]))[0][0])
     number = _GENTLE * thinnest**2 * max(phi, 1e-6)
