@@ -15,7 +15,7 @@ from tribolab.friction.segments.strokes import find_strokes
 from tribolab.reading.runs.inertia import acceleration, take_inertia
 from tribolab.units.conversion import positive
 
-_MAX_CONDITION = 1e6  # condition number above which a pair of strokes does not separate the terms
+_MAX_CONDITION = 1e6  # condition number above which the fit to a pair of strokes is not unique
 _MAX_SAMPLES = 1 << 20  # most samples used: the mass is constant within a run
 
 
@@ -28,7 +28,7 @@ class MovingMass(NamedTuple):
 
 
 def moving_mass(run: xr.Dataset) -> MovingMass | None:
-    """Find the mass whose inertia is in the friction force; None if undetermined.
+    """Return the mass whose inertia adds to the measured friction force; None if undetermined.
 
     Parameters
     ----------

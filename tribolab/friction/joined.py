@@ -54,7 +54,7 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
     curves
         Each curve (sliding_speed) with the labels that distinguish it, the same dims for all: names
         such as ``surface`` and ``medium``, or numbers in SI such as ``normal_force`` [N]; numbers
-        of other names stay as they are, without a unit.
+        under other names have no unit.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
     shape = (*(axis.size for axis in axes.values()), speeds.size)
     values: dict[str, np.ndarray] = {}
     for (data, labels), place in zip(curves, places, strict=True):
-        at: tuple[int | np.ndarray, ...] = tuple(_place(axes[dim], labels[dim]) for dim in dims)
+        at: tuple[int | np.ndarray, ...] = tuple(_index(axes[dim], labels[dim]) for dim in dims)
         at = (*at, place)
         own = data.reset_coords().assign(measured_speed=data["sliding_speed"])
         for name, variable in own.data_vars.items():
@@ -112,7 +112,7 @@ def _axis(labels: Sequence[Label]) -> np.ndarray:
     return np.unique(np.array(labels, dtype=float))
 
 
-def _place(axis: np.ndarray, label: Label) -> int:
+def _index(axis: np.ndarray, label: Label) -> int:
     if axis.dtype == object or isinstance(label, str):
         names: list[Label] = axis.tolist()
         return names.index(label)

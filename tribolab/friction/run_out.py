@@ -34,7 +34,7 @@ from tribolab.friction import limits
 
 MAX_COARSE_TURNS = 64.0  # turns in a record: for more, finer intervals of time are used
 _TURNS_OF_SECOND_ORDER = 2.0  # turns above which a wave twice per turn is also fitted
-_MIN_TURNS = 0.25  # smallest part of a turn assumed
+_MIN_TURNS = 0.25  # a smaller part of a turn is treated like this one
 _STRETCHES_PER_TURN, _MIN_STRETCHES_PER_TURN = 8, 4  # intervals per turn for many turns
 # most intervals: for more turns, at least 16 are averaged in each coarse one
 _MAX_STRETCHES = 6144
@@ -45,7 +45,7 @@ class Wave(NamedTuple):
 
     signal: np.ndarray  # over the record's intervals, in the signal's unit
     amplitude: float
-    turns: float  # periods of the wave: twice the turns of the rig, if it repeats twice
+    turns: float  # periods in the record: the turns of the rig, or twice as many
 
     @property
     def left(self) -> float:
@@ -86,12 +86,13 @@ def turned(time: np.ndarray, speed: np.ndarray) -> np.ndarray:
 
 
 def hidden_by_part(turns: float) -> float:
-    """Return the standard error that a part of a turn hides, relative to its own scatter.
+    """Return the standard error of a mean over less than one turn, relative to the scatter in it.
 
     Notes
     -----
-    Worst case around a crest: the mean deviates by sinc(k), which equals 1.96 errors; the variance
-    is ``(1 + sinc(2 k))/2 - sinc(k)**2`` with ``sinc(x) = sin(pi x)/(pi x)``.
+    In the worst case the record is centred on a crest of the wave: its mean deviates by sinc(k)
+    amplitudes, which are 1.96 standard errors, and its variance is ``(1 + sinc(2 k))/2 -
+    sinc(k)**2`` with ``sinc(x) = sin(pi x)/(pi x)``.
     """
     k = max(turns, _MIN_TURNS)
     scatter = np.sqrt((1 + np.sinc(2 * k)) / 2 - np.sinc(k) ** 2)
@@ -142,14 +143,14 @@ def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
 
 
 def in_step(blocks: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return the angle [rad], stretched by up to `MAX_ERROR_OF_SPEED` to maximise its wave.
+    """Return the angle [rad], stretched by up to `MAX_ERROR_OF_SPEED` to maximise the fitted wave.
 
     Parameters
     ----------
     blocks, angle
         Means of the signal and of the angle over equal time intervals (stretch).
     """
-    # steps of a quarter turn each
+    # from step to step the total angle changes by a quarter turn
     steps = math.ceil(4 * limits.MAX_ERROR_OF_SPEED.value * turns_of(angle))
     stretched = 1 + np.linspace(
         -limits.MAX_ERROR_OF_SPEED.value, limits.MAX_ERROR_OF_SPEED.value, 2 * steps + 1

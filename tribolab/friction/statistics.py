@@ -213,10 +213,7 @@ def _estimate_errors(records: list[_Record]) -> list[Estimate]:
     moved = np.abs(levels.level - blocks.mean(axis=1))
     path, beyond = (
         with_freedom(np.sqrt(sem**2 + moved**2 + left**2), np.hypot(u95 + moved, NORMAL * left))
-        for sem, u95 in (
-            (levels.sem, levels.u95),
-            (levels.sem_beyond, levels.u95_beyond),
-        )
+        for sem, u95 in ((levels.sem, levels.u95), (levels.sem_beyond, levels.u95_beyond))
     )
     out = []
     for k, record in enumerate(records):

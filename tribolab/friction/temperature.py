@@ -34,10 +34,7 @@ def sliding_temperature(run: xr.Dataset, segments: xr.Dataset) -> dict[str, floa
     means = _means("temperature", run, segments)
     if not means:
         return {}
-    return {
-        "temperature_K": float(np.mean(means)),
-        "temperature_spread_K": float(np.std(means)),
-    }
+    return {"temperature_K": float(np.mean(means)), "temperature_spread_K": float(np.std(means))}
 
 
 def sliding_area(run: xr.Dataset, segments: xr.Dataset) -> dict[str, float]:

@@ -68,13 +68,13 @@ def without_gaps(steps: np.ndarray) -> np.ndarray:
 
 
 def _is_uneven(time: np.ndarray) -> bool:
-    """Return whether rows deviate from even rows by more than a share of the duration."""
+    """Return whether sample times deviate from even spacing by a relevant share of the duration."""
     lasted = float(time[-1] - time[0])
     if not lasted > 0:
         return False
     even = np.linspace(0.0, 1.0, time.size)
     ahead = float(np.abs((time - time[0]) / lasted - even).max())
-    # the limit includes one row: a few rows are never more even
+    # one row is allowed in addition, else no short record would count as even
     return ahead > MAX_UNEVEN.value + 1 / time.size
 
 

@@ -160,7 +160,7 @@ class Findings:
     def messages(self, everything: bool = False) -> list[tuple[str, str, str, str]]:
         """Return status, check, message and remedy of each objection and note, worst first.
 
-        With `everything`, the results of all checks.
+        With `everything`, return the results of all checks.
         """
         return finding_texts(self.rows, notes=True, everything=everything)
 

@@ -120,11 +120,9 @@ def attach(
 
 
 def attach_all(
-    data: xr.Dataset,
-    flags: Iterable[tuple[str, Mapping[str, np.ndarray]]],
-    bits: Mapping[str, int],
+    data: xr.Dataset, flags: Iterable[tuple[str, Mapping[str, np.ndarray]]], bits: Mapping[str, int]
 ) -> xr.Dataset:
-    """Return a dataset with quality flags of several variables, as by `attach`."""
+    """Return a dataset with quality flags of several variables, like `attach` of one."""
     pairs: dict[str, _Flags] = {}
     names = []
     for name, own in flags:

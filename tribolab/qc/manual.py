@@ -28,7 +28,7 @@ _ACCEPTED, _REJECTED = "accepted", "rejected"
 
 
 class _Decision(NamedTuple):
-    """User's decision on samples: action, author, and intervals of the record."""
+    """User's decision on samples: action, author, and index ranges of the samples."""
 
     action: str
     author: str
@@ -45,9 +45,9 @@ class _DecidedSamples(NamedTuple):
     def who(self, action: str, bad: np.ndarray) -> str:
         """Return the authors of the decisions that cover the marked samples."""
         names = [
-            heard.author
-            for heard in self.decisions
-            if heard.action == action and any(bad[piece].any() for piece in heard.pieces)
+            one.author
+            for one in self.decisions
+            if one.action == action and any(bad[piece].any() for piece in one.pieces)
         ]
         return ", ".join(dict.fromkeys(names))
 

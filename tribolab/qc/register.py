@@ -53,7 +53,7 @@ class Result:
     def decision(self) -> str:
         """User's decision on the objection, as text; "" without one."""
         words = {
-            "accepted": ("accepted by {} in spite of"),
+            "accepted": "accepted by {} in spite of",
             "rejected": "within a part that {} rejected",
         }
         return words[self.settled].format(self.settled_by) if self.settled else ""
@@ -183,7 +183,7 @@ def sample_result(
     flags
         Severities (time).
     time
-        [s] (time)
+        Sample times [s].
     message
         Text with ``{count}`` and ``{where}`` to fill in; ``{count:gap|gaps}`` adds the matching
         noun.

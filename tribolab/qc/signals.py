@@ -1,7 +1,7 @@
 """Checks on one signal: missing, stuck, clipped, quantised and outlying samples.
 
 Each is a plain function from an array and limits to flags (see :mod:`tribolab.qc.flags`). None
-changes a sample. All are passes of whole-array operations, over long records piece by piece.
+changes a sample. Long records are processed piece by piece, each with whole-array operations.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
     Parameters
     ----------
     values
-        (time)
+        The signal (time).
     threshold
-        Height in standard deviations of the local noise.
+        Smallest height of a spike, in standard deviations of the local noise.
 
     Returns
     -------
@@ -54,10 +54,10 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 
     Notes
     -----
-    The height of a sample is its excess over its neighbour *and* over the straight line through the
-    two nearest samples, on each side; the smaller side is used. Sawteeth and steps are therefore
-    not spikes, nor is a peak after which the signal has another level: the neighbours must agree
-    within half the height.
+    On each side, a sample is compared with its neighbour and with the straight line through the two
+    nearest samples; its height is the smallest of the four deviations. Sawteeth and steps are
+    therefore not spikes. Nor is a peak after which the signal has another level: both neighbours
+    must agree within half the height.
     """
     flags = filled(values.size, NOT_EVALUATED, np.int8)
     if values.size < 16:
@@ -79,7 +79,7 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 def _height(step: np.ndarray) -> np.ndarray:
     """Return how far each sample, except two at both ends, deviates from its neighbours."""
     bend = np.diff(step)
-    # deviation from the previous sample and from the line through the previous two; then the next
+    # deviation from the previous sample, and the line through two of them; the same for the next
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
     upward = np.minimum(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]))
     downward = np.maximum(np.maximum(sides[0], sides[1]), np.maximum(sides[2], sides[3]))
@@ -87,7 +87,7 @@ def _height(step: np.ndarray) -> np.ndarray:
 
 
 def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, int]:
-    """Return the noise level of each block, not below the quietest quarter, and the block length.
+    """Return the noise level of each block, at least the lower quartile, and the block length.
 
     A block next to a much noisier one has the level of the latter, because it may contain the start
     of a noisier step. The remainder at the end belongs to the last block.
@@ -110,7 +110,7 @@ def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, 
 
 
 class _EqualRuns(NamedTuple):
-    """Sequences of identical values: lengths and their counts, first and end of the long ones."""
+    """Lengths of sequences of identical values, their counts, and start and end of long ones."""
 
     lengths: np.ndarray
     counts: np.ndarray
@@ -157,7 +157,7 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     Parameters
     ----------
     values
-        (time)
+        The signal (time).
     chance
         Largest probability of such an interval anywhere in a sound, quantised signal of this
         length.
@@ -201,7 +201,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     Parameters
     ----------
     values
-        (time)
+        The signal (time).
     excess
         Smallest ratio of samples at the outermost value to those at the next level of the quantised
         signal; the excess must also be five standard deviations of that count. In a signal that is
@@ -238,7 +238,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
 
 
 def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return the readings of a slowly refreshed signal, and the reading of each sample, or None."""
+    """Return readings of a slowly refreshed signal, and their number at each sample; else None."""
     if values.size < 2 or values.size > _MAX_EXAMINED:
         return None
     changes = np.concatenate([[True], values[1:] != values[:-1]])
@@ -249,7 +249,7 @@ def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
 
 
 def _end_counts(values: np.ndarray, end: float, sign: float, step: float) -> tuple[int, int, bool]:
-    """Return the numbers of samples at an end of the range and near it, and whether they touch."""
+    """Count samples at an end of the range and near it; also return whether two are adjacent."""
     count, below, in_a_row, before = 0, 0, False, False
     for start, stop in pieces(0, values.size):
         depth = sign * (end - values[start:stop])

@@ -29,10 +29,7 @@ MAX_SURE_HURST = Limit(
     "judgement",
 )
 MAX_FITTED_HURST = Limit(
-    2.0,
-    "1",
-    "fits of tips and filters reach 1.5; a steeper one is not believed",
-    "judgement",
+    2.0, "1", "fits of tips and filters reach 1.5; a steeper one is not believed", "judgement"
 )
 MIN_SHARE_OF_HEIGHT = Limit(
     0.9,

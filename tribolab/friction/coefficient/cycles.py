@@ -27,13 +27,13 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
         With ``position`` or a signed ``sliding_velocity``, and ``friction_force`` with
         ``normal_force``, or ``friction_coefficient``.
     middle
-        Share of each stroke's length, about its middle, over which friction is averaged: where a
-        sinusoidal motion is fastest. 0 < middle <= 1; ``"50 %"`` is 0.5.
+        Share of each stroke's length over which friction is averaged, around the middle of the
+        stroke, where a sinusoidal motion is fastest. 0 < middle <= 1; ``"50 %"`` is 0.5.
 
     Returns
     -------
     xarray.Dataset
-        On dim ``cycle`` (a forward stroke and the backward one next to it, from 1): ``time`` [s],
+        On dim ``cycle`` (a forward stroke and the next backward one, from 1): ``time`` [s],
         ``friction_coefficient``, ``friction_coefficient_energy`` (where forces are known),
         ``friction_force_offset`` or ``friction_coefficient_offset``, ``normal_force`` [N],
         ``sliding_speed`` (mean over the middle parts) [m/s], ``stroke_length`` [m],
@@ -51,11 +51,11 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
     -----
     With F_f, F_b the mean forces over the middle parts of the two strokes of a cycle and N_f, N_b
     their mean normal forces, mu = (F_f - F_b)/(N_f + N_b): a constant zero of the force drops out.
-    The energy friction coefficient is the area of the loop over the distance,
-    mu_E = (closed integral of F dx)/(2 L N) with the stroke L and the mean load N [1]_; the ends,
-    where elastic parts only reverse, are included. The standard error of the mean includes the
-    correlation of neighbouring cycles, and is taken about the trend if that is significant
-    (p < 1 %).
+    The energy friction coefficient is the area of the loop over the distance, mu_E = (closed
+    integral of F dx)/(2 L N) with the stroke L and the mean load N [1]_; the ends of the strokes,
+    where parts deform elastically before they slide back, are included. The standard error of the
+    mean includes the correlation of neighbouring cycles, and is taken about the trend if that is
+    significant (p < 1 %).
 
     References
     ----------
@@ -227,7 +227,7 @@ def _energy(
     way = np.append(strokes.way, 0)[number] * np.append(strokes.length, 0.0)[number]
     place = np.where(np.isfinite(strokes.place), strokes.place, 0.0)
     begin, stop = strokes.first[:-1], strokes.first[1:]
-    # within a stroke; at a reversal the position hardly changes
+    # no work between strokes: at a reversal the position hardly changes
     step = np.diff(place) * way[:-1]
     step[stop[stop - 1 < step.size] - 1] = 0.0
     work = np.append((force[1:] + force[:-1]) / 2 * step, 0.0)

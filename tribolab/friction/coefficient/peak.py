@@ -1,4 +1,4 @@
-"""Height of a peak in noisy readings: by a parabola if the peak is round, else the maximum."""
+"""Peak friction in noisy readings: maximum of a fitted parabola, or of a pointed peak itself."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tribolab.arrays.medians import median
 from tribolab.friction.coefficient import limits
 
 _NOISE_OF_STEPS = 1.4826 / np.sqrt(2)  # from median step to standard deviation
-# readings above this share of the rise are fitted; fewer for a pointed peak
+# shares of the rise above which readings are fitted: fewer and fewer for a pointed peak
 _PEAK_SHARES = (0.8, 0.9, 0.95, 0.98)
 
 
 class Peak(NamedTuple):
-    """Peak with its time [s], height and standard error, and whether it is significant."""
+    """Time [s], value and standard error of a peak, and whether it is significant."""
 
     moment: float
     height: float
@@ -70,10 +70,10 @@ def peak_of_start(
     top = int(np.argmax(smooth))
     if clear:
         moment, height, error = _top_peak(time, ratio, smooth, width, sliding, noise)
-    else:  # highest value expected from noise in so many independent readings
+    else:  # no peak exceeds the noise: the mean of the readings with the highest running mean
         near, when = ratio[top : top + width], time[top : top + width]
         height, error, moment = float(near.mean()), noise / np.sqrt(near.size), float(when.mean())
-        # the boundary between start and sliding cannot be seen
+        # where the start ends and sliding begins is unknown, so the difference is an error
         error = float(np.hypot(error, height - sliding))
     error = float(np.hypot(error, sem))
     return Peak(
@@ -113,7 +113,10 @@ def _top_peak(
 
 
 def _smooth(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray, int, bool]:
-    """Return running means over the fewest readings with a clear peak, their number, if clear."""
+    """Return running means, the number of readings in each, and whether a peak exceeds the noise.
+
+    The number is doubled until a peak does, up to an eighth of the readings.
+    """
     total = np.concatenate([[0.0], np.cumsum(ratio)])
     width = 1
     while True:
@@ -129,7 +132,7 @@ def _smooth(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray
 def _parabola(
     time: np.ndarray, values: np.ndarray, noise: float
 ) -> tuple[float, float, float, float]:
-    """Return time, height and error of a parabola's maximum within its readings, and scatter."""
+    """Fit a parabola; return time, value and error of its maximum, and the scatter about it."""
     middle, half = (time[0] + time[-1]) / 2, (time[-1] - time[0]) / 2
     u = (time - middle) / half
     basis = np.stack([np.ones(u.size), u, u * u], axis=1)

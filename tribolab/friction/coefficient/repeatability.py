@@ -46,7 +46,7 @@ def run_levels(
         whole = together["friction_coefficient"].values[place]
         mu, sem = (own[f"friction_coefficient{end}"].values for end in ("", "_sem"))
         known = np.isfinite(sem) & (sem > 0)
-        if not known.any():  # rows that are results, without their own error
+        if not known.any():  # results of the instrument, without errors
             known, sem = np.ones(mu.size, bool), mu
         fine = (mu > 0) & (whole > 0) & known
         weight = (mu[fine] / sem[fine]) ** 2

@@ -16,7 +16,7 @@ ZERO, RESTS, WEIGHED = "a zero", "told by rests without load", "weighed by what 
 
 
 class Reversal(NamedTuple):
-    """Interpretation of the middle of the loops: tilt or zero.
+    """Interpretation of the middle of the friction loops: tilt or zero.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Reversal(NamedTuple):
 
 
 def _pair_means(values: np.ndarray, pair: np.ndarray) -> np.ndarray:
-    """Return the mean over the two strokes of each pair, at both; NaN without a pair."""
+    """Return for each segment the mean over the two strokes of its pair; NaN without a pair."""
     paired = pair >= 0
     sums = np.zeros(int(pair.max(initial=-1)) + 1)
     np.add.at(sums, pair[paired], values[paired] / 2)
@@ -126,7 +126,7 @@ def reversal_of(
     most = np.nan_to_num(_pair_means(apart, members))
     if rests is not None and _is_tilt(apart, members, load, time, ratio, rests):
         return Reversal(members, most, most, RESTS)
-    if rests is not None:  # the zero moved since the rest, or the cell is slightly tilted
+    if rests is not None:  # the zero drifted since the rest, or the cell is slightly tilted
         return Reversal(members, nothing, most, ZERO)
     tilt, offset = (float(stated.get(n, {}).get("standard", 0)) for n in ("tilt", "friction_zero"))
     if not tilt:

@@ -1,4 +1,4 @@
-"""Static friction: peak of the force at each start of sliding, and the rest before it.
+"""Static friction: peak of the force at each start of sliding, and duration of the rest before it.
 
 It is measured for sleds, seals and wipers. A start is the end of a rest: the force rises before
 sliding begins, and falls to the sliding force after the contact breaks away.
@@ -15,23 +15,25 @@ from tribolab.arrays.broadcasting import of_runs
 from tribolab.arrays.medians import median_of_known
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient import limits
-from tribolab.friction.coefficient.coefficient import (
-    belong,
-    friction_coefficient,
-    friction_signal,
-)
+from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
 from tribolab.friction.coefficient.peak import noise_between, peak_of_start
+from tribolab.friction.coefficient.segment_samples import belong
 from tribolab.friction.segments.specimens import begins_of_specimens
 from tribolab.friction.segments.stretches import name_of
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
 _EXTENSION = 1.5  # the search is extended by this factor if the force still rises
-_END_SHARE = 0.1  # share of the readings; if their mean is the highest, the force still rises
+_END_SHARE = (
+    0.1  # share of the readings at the end; while their mean is the highest, the force rises
+)
 
 
 class _Start(NamedTuple):
-    """Start of a segment: samples before and within (to `latest` if force rises), and the rest."""
+    """Segment number, samples in which its static friction is searched, and rest before it [s].
+
+    The samples are `first` to `last`, or up to `latest` while the force still rises.
+    """
 
     number: int
     first: int
@@ -81,9 +83,9 @@ def static_friction(
     Notes
     -----
     The highest of n noisy readings exceeds the true peak. Therefore a parabola is fitted to the
-    readings in the upper 20 % between sliding and the maximum, and the peak is its maximum; the
-    error is that of the fit, with the noise between neighbouring samples as the readings' own, and
-    that of the zero. For a pointed peak that does not fit a parabola within the noise, fewer
+    readings in the upper 20 % between sliding and the maximum, and the peak is its maximum. The
+    error combines that of the fit, given the noise between neighbouring samples, and that of the
+    zero. For a pointed peak that does not fit a parabola within the noise, fewer
     readings are used; with fewer than five the peak is the highest reading, as in ASTM D1894 and
     ISO 8295, and its error includes half of the larger step next to it. If no single reading
     exceeds the noise, means over 2, 4, 8 ... readings are used.
@@ -135,7 +137,7 @@ def static_friction(
 
 
 class _Peak(NamedTuple):
-    """Results for one start; names as in the dataset."""
+    """Static friction at one start of sliding; the fields are named as in the dataset."""
 
     number: int
     static_friction_coefficient: float
@@ -191,7 +193,7 @@ def _starts(
 
 
 def _starts_slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
-    """Return whether a segment begins a record or specimen with a force still near zero."""
+    """Return a mask of segments that begin a record or specimen with a force still near zero."""
     signal = friction_signal(run)
     time, values = run.variables["time"].values, run.variables[signal].values
     begins = np.append(time[:1], begins_of_specimens(run))
@@ -251,7 +253,7 @@ def _measure(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start) 
 
 
 def _load(run: xr.Dataset, friction: xr.Dataset, i: int, part: slice) -> np.ndarray | None:
-    """Return the normal force over a start, without its zero; NaN without contact."""
+    """Return the normal force at a start of sliding, minus its zero [N]; NaN without contact."""
     if "normal_force" not in run or "friction_force" not in run:
         return None
     zeros = friction.variables.get("normal_force_offset")
@@ -262,7 +264,7 @@ def _load(run: xr.Dataset, friction: xr.Dataset, i: int, part: slice) -> np.ndar
 
 
 def _count_readings(ratio: np.ndarray, usual: int) -> int:
-    """Return the number of readings of a start: the usual ones, or more while friction rises."""
+    """Return how many readings of a start are searched: `usual`, or more while friction rises."""
     taken = usual
     while taken < ratio.size:
         size = max(int(_END_SHARE * taken), limits.MIN_SAMPLES_OF_PEAK.value)

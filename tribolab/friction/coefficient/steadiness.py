@@ -34,9 +34,9 @@ def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = LIMITS) -> n
 
     Above 20 segments the p value must decrease with the square of their number: in a hundred
     strokes one is below 0.01 by chance, and with Bonferroni's proportional correction every fifth
-    of many such runs would contain one. A crank makes hundreds of segments of few effective
-    samples, whose correlation cannot be resolved; noise in one of twenty looks like a trend, so
-    that no single one is significant.
+    of many such runs would contain one. A crank makes hundreds of segments with few effective
+    samples each. Their correlation cannot be resolved, and noise looks like a trend in one of
+    twenty: the limit is 0, so that no segment has a significant trend.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def undecided(
 ) -> np.ndarray:
     """Return a mask of segments whose trend is neither significant nor excluded.
 
-    The change is as large as the check's limit, but with too few effective samples for the test; or
-    it is so large that no test makes the segment steady.
+    Either the change exceeds the check's limit, with too few effective samples for a test; or it is
+    so large that the segment is not called steady, although the test finds no trend.
 
     Parameters
     ----------

@@ -67,11 +67,7 @@ def set_bounds(
 
 
 def _refuse_bounds(
-    segments: xr.Dataset,
-    place: int,
-    decision: Decision,
-    run: xr.Dataset,
-    new: tuple[float, float],
+    segments: xr.Dataset, place: int, decision: Decision, run: xr.Dataset, new: tuple[float, float]
 ) -> None:
     low, high = new
     if not low < high:

@@ -13,10 +13,7 @@ from tribolab.friction.oscillation.spectrum.survey import Survey
 
 _MAX_HARMONIC = 16  # highest harmonic that is examined individually
 # frequency ratios of the bins around a line that define its surroundings
-_SURROUNDINGS = (
-    1.15,
-    1.5,
-)
+_SURROUNDINGS = (1.15, 1.5)
 _WINDOW_BINS = 0.8  # bins, width of a line due to the window
 
 

@@ -13,17 +13,8 @@ from tribolab.friction.oscillation.events import Events, find_events, loading_ra
 from tribolab.friction.oscillation.few_periods import slow_wave, without_slow_wave
 from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
-from tribolab.friction.oscillation.periods import (
-    PeriodVerdict,
-    at_odds,
-    period_verdict,
-)
-from tribolab.friction.oscillation.regularity import (
-    SLIP_KINDS,
-    Regularity,
-    regularity,
-    scatter,
-)
+from tribolab.friction.oscillation.periods import PeriodVerdict, at_odds, period_verdict
+from tribolab.friction.oscillation.regularity import SLIP_KINDS, Regularity, regularity, scatter
 from tribolab.friction.oscillation.spectrum.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, coarsened, make_record
 from tribolab.friction.oscillation.spectrum.survey import Survey, survey
@@ -202,10 +193,7 @@ def _without_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord 
 
 
 def _view(
-    record: EvenRecord,
-    oscillation: Oscillation,
-    noise: float,
-    fewest: int = _SAMPLES_PER_PERIOD,
+    record: EvenRecord, oscillation: Oscillation, noise: float, fewest: int = _SAMPLES_PER_PERIOD
 ) -> View:
     """Find the cycles of an oscillation at the scale of its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))

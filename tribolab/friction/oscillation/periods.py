@@ -10,11 +10,7 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.components import Component
 from tribolab.friction.oscillation.few_periods import SlowWave
 from tribolab.friction.oscillation.oscillation import Oscillation
-from tribolab.friction.oscillation.regularity import (
-    SLIP_KINDS,
-    Regularity,
-    scatter,
-)
+from tribolab.friction.oscillation.regularity import SLIP_KINDS, Regularity, scatter
 from tribolab.friction.oscillation.waveform import (
     CLASSES,
     NOT_CLEAR,

@@ -28,11 +28,7 @@ _TURNS_PER_FIT = 8.0  # turns that one fit covers
 _MAX_ORDER = 8
 _BLOCKS_PER_TURN = 32  # blocks per turn to which waves are fitted
 # spectral widths from a line that define its surroundings
-_WIDTHS_TO_SURROUNDINGS = (
-    1.0,
-    1.5,
-    2.0,
-)
+_WIDTHS_TO_SURROUNDINGS = (1.0, 1.5, 2.0)
 _FAST_PIECE_SAMPLES = 64  # samples in a piece for aliased waves
 _MAX_FAST_ORDER = 2
 REPEATS = "repeats"  # marks repeating waves in the text of ``instrument``

@@ -11,7 +11,8 @@ import xarray as xr
 from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median_of_known
 from tribolab.core.errors import AnalysisError
-from tribolab.friction.coefficient.coefficient import friction_signal, trimmed_slices
+from tribolab.friction.coefficient.coefficient import friction_signal
+from tribolab.friction.coefficient.segment_samples import trimmed_slices
 from tribolab.friction.oscillation import limits
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests

@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.arrays.broadcasting import of_runs
-from tribolab.friction.coefficient.coefficient import belong, friction_signal
+from tribolab.friction.coefficient.coefficient import friction_signal
+from tribolab.friction.coefficient.segment_samples import belong
 from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.critical_stiffness import STIFFNESS, critical_stiffness

@@ -85,12 +85,7 @@ def describe_waveform(
     )
 
 
-CLASSES = (
-    "smooth sliding",
-    "sawtooth stick-slip",
-    "sinus-like oscillation",
-    "reversed sawtooth",
-)
+CLASSES = ("smooth sliding", "sawtooth stick-slip", "sinus-like oscillation", "reversed sawtooth")
 NOT_LOOKED_AT = "not evaluated"
 NOT_CLEAR = "not decided"
 

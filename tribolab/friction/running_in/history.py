@@ -10,8 +10,9 @@ import xarray as xr
 from tribolab.arrays.broadcasting import of_runs
 from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError, Cure
-from tribolab.friction.coefficient.coefficient import belong, friction_coefficient, friction_signal
+from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
 from tribolab.friction.coefficient.cycles import friction_per_cycle
+from tribolab.friction.coefficient.segment_samples import belong
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.mean_error import limits as of_means
 from tribolab.friction.mean_error.level import levels_of
@@ -46,11 +47,11 @@ class Mean(NamedTuple):
 
 
 class History(NamedTuple):
-    """Friction along a run at one speed [m/s], with an entry for each cycle or interval.
+    """Friction along a run at one speed [m/s], with a value for each cycle or interval.
 
-    `time` [s] and `distance` [m] are at the middle of each, the latter without rests. `work` [J] is
-    done in each cycle, `wear` [m] is the displacement normal to the contact since the beginning;
-    both are empty if unknown.
+    `counted` is the kind of interval. `time` [s] and `distance` [m] slid are at its middle. `work`
+    [J] is done in each cycle, `wear` [m] is the displacement normal to the contact since the
+    beginning; both are empty if unknown.
     """
 
     speed: float
@@ -65,7 +66,7 @@ class History(NamedTuple):
     wear: np.ndarray
 
     def places(self, values: np.ndarray) -> tuple[float, float, float]:
-        """Return the start and end of the steady part on an axis, and the end of the axis."""
+        """Return start and end of the steady part, and end of the run, in times or distances."""
         edges = np.concatenate([[0.0], (values[1:] + values[:-1]) / 2, [0.0]])
         edges[0], edges[-1] = 1.5 * values[0] - values[1] / 2, 1.5 * values[-1] - values[-2] / 2
         if not self.settling.is_steady:
@@ -75,9 +76,7 @@ class History(NamedTuple):
 
 @of_runs
 def running_in(
-    run: xr.Dataset,
-    segments: xr.Dataset | None = None,
-    friction: xr.Dataset | None = None,
+    run: xr.Dataset, segments: xr.Dataset | None = None, friction: xr.Dataset | None = None
 ) -> xr.Dataset:
     """Return friction along a run at one speed, the end of running-in, and the steady value.
 
@@ -86,7 +85,7 @@ def running_in(
     run
         The run, with ``friction_force`` and ``normal_force``, or ``friction_coefficient``.
     segments, friction
-        From `find_segments` and `friction_coefficient` on the same run; found here if not given.
+        From `find_segments` and `friction_coefficient` on the same run; computed if not given.
 
     Returns
     -------
@@ -136,7 +135,7 @@ def running_in(
 
 
 def histories_of(run: xr.Dataset, friction: xr.Dataset) -> list[History]:
-    """Return friction along a run at each speed with enough sliding.
+    """Return the friction histories of a run: one for each speed with enough sliding.
 
     Parameters
     ----------
@@ -194,7 +193,7 @@ def _stretch_history(run: xr.Dataset, friction: xr.Dataset) -> History | None:
     speed, direction = friction["sliding_speed"].values, friction["direction"].values
     start, stop = friction["start"].values, friction["stop"].values
     lasted = stop - start
-    if not lasted.sum() > 0:  # rows that are results
+    if not lasted.sum() > 0:  # the rows are results of the instrument, not samples
         return None
     usual = float(speed[np.argmax(lasted)])
     alike = np.abs(np.log(np.where(speed > 0, speed, np.nan) / usual)) < np.log1p(
@@ -210,7 +209,7 @@ def _stretch_history(run: xr.Dataset, friction: xr.Dataset) -> History | None:
     count = min(int(good.sum()), int(of_means.BLOCKS.value))
     if count < limits.MIN_VALUES.value:
         return None
-    # without the rests between segments
+    # sliding time, without the rests between segments
     clock = np.interp(moment, *_sliding_clock(start[alike], stop[alike]))
     slid = on_grid(clock[good], clock[good], count)
     friction_along = on_grid(clock[good], values[good], count)
@@ -221,7 +220,7 @@ def _stretch_history(run: xr.Dataset, friction: xr.Dataset) -> History | None:
 
 
 def _sliding_clock(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the times, and the time slid until then without rests between segments."""
+    """Return start and stop times of segments, and the sliding time up to each of them [s]."""
     slid = np.cumsum(stop - start)
     before = slid - (stop - start)
     return np.stack([start, stop], axis=1).ravel(), np.stack([before, slid], axis=1).ravel()
@@ -230,7 +229,7 @@ def _sliding_clock(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.
 def _coefficients(
     run: xr.Dataset, friction: xr.Dataset, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return times and friction coefficients of a segment, whose mean is its coefficient."""
+    """Return times and pointwise friction coefficients of a segment, with its mean coefficient."""
     own = {str(name): float(friction[name].values[number]) for name in _READ if name in friction}
     time = run["time"].values
     first = int(np.searchsorted(time, own["start"], "left"))

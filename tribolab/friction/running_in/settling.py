@@ -31,17 +31,18 @@ from tribolab.friction.mean_error.lines import lines_of, waves_of
 from tribolab.friction.running_in import limits
 from tribolab.friction.running_in.kinds import NONE, NOT_FINISHED, RUN_IN, STEP
 
-_TIME_GRID = np.geomspace(0.004, 1.0, 24)  # share of the sequence
-_NO_OSCILLATION_TIMES = (0.03, 0.15)  # numbers of exponentials that are not oscillations
+_TIME_GRID = np.geomspace(0.004, 1.0, 24)  # time constants that are tried, relative to the sequence
+# time constants of exponentials removed before oscillations are sought
+_NO_OSCILLATION_TIMES = (0.03, 0.15)
 _GOLDEN_ROUNDS, _GOLDEN = 20, 0.382
 
 
 class Settling(NamedTuple):
-    """Steady part of a sequence, if any; values in its unit, positions in values.
+    """Running-in and steady part of a sequence, as indices of its values.
 
     The steady part is ``values[start:stop]``; without one, both are the length of the sequence.
-    `start_u` is the standard uncertainty of `start`, and `first` the fitted initial value. `more`
-    means that one exponential does not describe the running-in.
+    `start_u` is the standard uncertainty of `start`, and `first` the fitted initial value in its
+    unit. `more` means that one exponential does not describe the running-in.
     """
 
     kind: str
@@ -98,7 +99,7 @@ def settling_of(values: np.ndarray) -> Settling:
 
 
 def _after_peak(values: np.ndarray) -> Settling | None:
-    """Return the running-in after an early extreme, as of friction that first rises; else None."""
+    """Return the running-in after an early extreme, e.g. if friction rises first; else None."""
     blocks = blocks_of(values, int(limits.BLOCKS_FOR_PEAK.value))
     level = blocks[-(blocks.size // 3) :].mean()
     peak = int(np.abs(blocks - level).argmax()) / blocks.size
@@ -112,7 +113,7 @@ def _after_peak(values: np.ndarray) -> Settling | None:
 
 
 class _Fit(NamedTuple):
-    """Normalised sequence of at most 384 intervals, and the fitted terms."""
+    """Normalised sequence of at most 384 intervals, and the oscillations fitted to it."""
 
     values: np.ndarray
     waves: np.ndarray

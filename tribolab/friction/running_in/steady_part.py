@@ -64,7 +64,7 @@ def steady_segments(run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset)
     Returns
     -------
     xarray.Dataset
-        All segments if the run does not become steady, which its record states.
+        All segments if the run does not become steady.
     """
     part = segments
     for history in histories_of(run, friction):

@@ -126,11 +126,7 @@ def constant_part(data: MeanVelocities, first: int, last: int, drift: float) -> 
     """
     noise = 0.0
     # coarser bins if noise hides the ends
-    for count in (
-        4 * _BINS_OF_PIECE,
-        2 * _BINS_OF_PIECE,
-        _BINS_OF_PIECE,
-    ):
+    for count in (4 * _BINS_OF_PIECE, 2 * _BINS_OF_PIECE, _BINS_OF_PIECE):
         count = min(count, (last - first) // 2)
         if count < 2 * limits.MIN_BINS_OF_CURVATURE.value:
             break
@@ -241,12 +237,7 @@ def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, mo
 
 
 def _is_one_motion(
-    data: MeanVelocities,
-    inside: np.ndarray,
-    begin: float,
-    end: float,
-    level: float,
-    drift: float,
+    data: MeanVelocities, inside: np.ndarray, begin: float, end: float, level: float, drift: float
 ) -> bool:
     """Return whether one smooth motion passes through the piece and its neighbours."""
     count = inside.size

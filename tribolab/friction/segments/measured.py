@@ -9,12 +9,7 @@ from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments.slopes import line
-from tribolab.friction.segments.stretches import (
-    Stretch,
-    finite,
-    name_of,
-    track,
-)
+from tribolab.friction.segments.stretches import Stretch, finite, name_of, track
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
@@ -97,11 +92,7 @@ def measured(
 
 
 def _narrow(
-    run: xr.Dataset,
-    start: np.ndarray,
-    stop: np.ndarray,
-    low: float,
-    high: float,
+    run: xr.Dataset, start: np.ndarray, stop: np.ndarray, low: float, high: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return start and end of each segment narrowed to the part between two positions."""
     if "position" not in run:

@@ -158,11 +158,7 @@ def _misfit(m: np.ndarray) -> np.ndarray:
 
 
 def straight_pieces(
-    time: np.ndarray,
-    velocity: np.ndarray,
-    noise: Noise,
-    breaks: np.ndarray,
-    resolution: float,
+    time: np.ndarray, velocity: np.ndarray, noise: Noise, breaks: np.ndarray, resolution: float
 ) -> Pieces:
     """Merge neighbouring pieces that one straight line describes as well as two."""
     starts = np.concatenate([[0], breaks])

@@ -148,11 +148,7 @@ def changes_significantly(readings: Readings, begin: float, end: float, most: fl
 
 
 def is_proven(
-    readings: Readings,
-    begin: float,
-    end: float,
-    most: float,
-    sides: tuple[bool, bool],
+    readings: Readings, begin: float, end: float, most: float, sides: tuple[bool, bool]
 ) -> bool:
     """Return whether a piece next to a long ramp has constant speed.
 

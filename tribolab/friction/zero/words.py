@@ -42,11 +42,7 @@ def _listed(numbers: np.ndarray) -> str:
 
 
 def of_speeds(
-    strokes: StrokeMeans,
-    loops: Middles,
-    known: KnownOfZero,
-    allowance: np.ndarray,
-    measured: bool,
+    strokes: StrokeMeans, loops: Middles, known: KnownOfZero, allowance: np.ndarray, measured: bool
 ) -> list[Doubt]:
     """Return doubts about pairs of unequal speeds whose friction is not known to be equal."""
     speed = strokes.speed[loops.member]

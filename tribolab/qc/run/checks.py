@@ -15,16 +15,21 @@ from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach_all, combine, uniform
 from tribolab.qc.manual import BIT, MANUAL, apply_decisions
 from tribolab.qc.register import SWITCHED_OFF, Check, Result, resolve_limits, results_of_checks
 from tribolab.qc.run.reading import READING_CHECKS
-from tribolab.qc.run.record import RECORD_CHECKS
 from tribolab.qc.run.rig import RIG_CHECKS
+from tribolab.qc.run.schema import SCHEMA_CHECKS
+from tribolab.qc.run.signal_checks import SIGNAL_CHECKS
 from tribolab.qc.run.sliding import SLIDING_CHECKS
 from tribolab.qc.run.subject import RunSubject
+from tribolab.qc.run.time_checks import TIME_CHECKS
 from tribolab.qc.run.zero import ZERO_CHECKS
 from tribolab.units.conversion import to_si
 
 RUN_CHECKS: dict[str, Check[RunSubject]] = {
     check.name: check
-    for check in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS, *ZERO_CHECKS)
+    for check in (
+        *(*SCHEMA_CHECKS, *TIME_CHECKS, *SIGNAL_CHECKS),
+        *(*RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS, *ZERO_CHECKS),
+    )
 }
 
 _SEGMENTS = "segments"

@@ -13,7 +13,7 @@ from tribolab.qc.run.subject import RunSubject
 
 
 def grade(values: np.ndarray, suspect: float, fail: float) -> np.ndarray:
-    """Return the flags of values whose magnitudes are compared with two limits.
+    """Return flags: suspect or fail for values whose magnitude exceeds a limit, else good.
 
     Examples
     --------
@@ -27,13 +27,9 @@ def grade(values: np.ndarray, suspect: float, fail: float) -> np.ndarray:
 
 
 def segment_results(
-    subject: RunSubject,
-    variable: str,
-    values: np.ndarray,
-    limits: Mapping[str, float],
-    what: str,
+    subject: RunSubject, variable: str, values: np.ndarray, limits: Mapping[str, float], what: str
 ) -> list[Result]:
-    """Return the results for one number per segment, with flags on the samples."""
+    """Return the result of comparing one number per segment with limits, and flags on samples."""
     flags = grade(values, limits["suspect"], limits.get("fail", np.inf))
     if (flags == NOT_EVALUATED).all():
         raise Skip(f"{what}: no reference value")

@@ -97,7 +97,7 @@ def _steps_without_friction(
     """Report steps of the load that the friction force at the same speed does not follow."""
     if "friction_force" not in subject.friction or np.isfinite(subject.target_normal_force).any():
         return []
-    # not the half loop: of a pair whose load changes, its friction is already divided by the load
+    # the half loop of a pair with unequal loads would assume that friction follows the load
     zero = float(median_of_known(subject.friction["friction_force_offset"].values))
     force = np.abs(subject.segment_means("friction_force") - zero)
     speed = np.nan_to_num(subject.friction["sliding_speed"].values)
@@ -187,10 +187,10 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
 
 
 def _slope(subject: RunSubject, part: slice, noise: float) -> tuple[float, float]:
-    """Return the velocity [m/s] from the position in a segment, and its error by reading errors.
+    """Return a segment's velocity from the position [m/s], and its error by noise and resolution.
 
-    Deviations from a line are not noise, because a stage that stops deviates too. In a segment
-    without a change of digit the reading error is constant.
+    Deviations from a line are not noise, because a stage that stops deviates too. The resolution
+    matters if the reading hardly changes: then its error is constant and shows no noise.
     """
     time, position = subject.time[part], subject.signals["position"][part]
     good = np.isfinite(position)
@@ -214,7 +214,8 @@ def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
         why = subject.about.clock_shift_refused or "the force does not follow the motion"
         text = f"the clock shift cannot be found from the signals ({why}): state clock_shift"
         return [Result("fail", "time", text, unit="s")]
-    share = 2.0 * error / float(np.min(subject.durations))
+    shortest = float((subject.segments["stop"] - subject.segments["start"]).min())
+    share = 2.0 * error / shortest
     text = f"the clocks are matched to {2.0 * error:.3g} s, {share:.1%} of the shortest segment"
     return [Result(status_of(share, limits), "time", text, error, "s")]
 

@@ -9,8 +9,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.chunks import one_by_one
 from tribolab.core.attributes import RunAttributes
+from tribolab.core.errors import shown
+from tribolab.core.limit import Limit
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
+from tribolab.qc.register import Check, Result, sample_result
+from tribolab.qc.run.subject import RunSubject
 from tribolab.reading.netcdf.table_schema import load_schema
 from tribolab.units.quantities import QUANTITIES
 
@@ -119,3 +124,35 @@ def tensile_share(normal_force: np.ndarray) -> float:
     pulled = int((normal_force < -threshold).sum())
     count = pulled + int((normal_force > threshold).sum())
     return pulled / count if count else 0.0
+
+
+def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    run = subject.run
+    results = [Result("suspect", "", text, cure=cure) for text, cure in missing_signals(run)]
+    for name, unit in wrong_units(run).items():
+        results.append(Result("fail", name, f"{name} is in '{shown(unit)}', not in SI"))
+    for name, span in one_by_one(ranges().items()):
+        if name not in run:
+            continue
+        flags = flag_range(run[name].values, span)
+        text = f"{{count:value|values}} outside {span.low:g} to {span.high:g}: "
+        text += f"{span.reason}; {{where}}"
+        results.append(sample_result(name, flags, subject.time, text))
+    if "normal_force" in run:
+        share = tensile_share(run["normal_force"].values)
+        if share > limits["pulled"]:
+            text = f"the normal force is negative in {share:.0%} of the loaded samples"
+            results.append(Result("fail", "normal_force", text, share))
+    return results
+
+
+SCHEMA_CHECKS = (
+    Check(
+        "schema",
+        0,
+        "Do the signals exist, in SI units, and within physical limits?",
+        "Correct quantity, unit, sign or scale of the column in the dialect.",
+        {"pulled": Limit(0.5, "1", "bodies that are separated most of the time do not slide")},
+        _schema,
+    ),
+)

@@ -122,7 +122,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     pairs = pairs_of(friction)
     moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
     means = []
-    for own in _load_groups(friction):  # separate loads: their friction differs truly
+    for own in _load_groups(friction):  # friction may depend on the load
         common = None if shared is None else shared[own]
         found = run_means(moving[own], mu[own], sem[own], wide[own], pairs[own], shared=common)
         means += [mean._replace(strokes=own[mean.strokes]) for mean in found]
@@ -149,7 +149,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
 
 
 def _load_groups(friction: xr.Dataset) -> list[np.ndarray]:
-    """Return the segments at each load, in the order of the loads."""
+    """Return the indices of the segments at each load, from the smallest load to the largest."""
     every = np.arange(friction.sizes["segment"])
     if "normal_force" not in friction:
         return [every]

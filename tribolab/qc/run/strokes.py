@@ -133,7 +133,7 @@ def _unequal_periods(subject: RunSubject, limits: Mapping[str, float]) -> list[R
     """Report oscillating segments in which drops and spectrum disagree on the period."""
     slip = subject.slip
     odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
-    # the chance of a false alarm is for all segments together
+    # the chance of a false alarm is limited for all segments together
     odd &= slip["false_alarm_probability"].values < BAND_BY_CHANCE.value / odd.size
     if odd.any():
         odd &= subject.friction["steady"].values == steadiness.IS_STEADY

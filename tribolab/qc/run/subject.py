@@ -16,9 +16,9 @@ from tribolab.core.errors import AnalysisError
 from tribolab.core.wording import number as number_text
 from tribolab.core.wording import speed_text
 from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.coefficient.segment_samples import trimmed_slices
 from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.oscillation.spectrum.lines import Line, segment_lines
-from tribolab.friction.oscillation.spectrum.noise import noise_level
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.segments.no_segment import consists_of_ramps, why_no_segment
 from tribolab.qc.flags import NOT_EVALUATED
@@ -29,7 +29,7 @@ _SIGNALS = (*_FORCES, "sliding_velocity", "position", "normal_stress", "temperat
 
 
 class RunSubject:
-    """Run that is checked, with quantities that several checks need and that are computed once.
+    """A run to be checked, with quantities that several checks need; each is computed once.
 
     Parameters
     ----------
@@ -146,10 +146,8 @@ class RunSubject:
 
     @cached_property
     def slices(self) -> list[slice]:
-        """Slice of the samples in each trimmed segment."""
-        first = np.searchsorted(self.time, self.segments["trimmed_start"].values, "left")
-        last = np.searchsorted(self.time, self.segments["trimmed_stop"].values, "right")
-        return [slice(int(a), int(b)) for a, b in zip(first, last, strict=True)]
+        """Index range of the samples of each trimmed segment."""
+        return trimmed_slices(self.run, self.segments)
 
     @cached_property
     def segment_mask(self) -> np.ndarray:
@@ -175,11 +173,6 @@ class RunSubject:
         for part, flag in one_by_one(zip(self.slices, flags, strict=True)):
             samples[part] = flag
         return samples
-
-    @cached_property
-    def durations(self) -> np.ndarray:
-        """Duration of each segment [s]."""
-        return self.segments["stop"].values - self.segments["start"].values
 
     @cached_property
     def friction_signal(self) -> str | None:
@@ -297,13 +290,13 @@ class RunSubject:
         return np.where(self.oscillates_strongly(least), self.slip["periods"].values, np.nan)
 
     def oscillates_strongly(self, least: float) -> np.ndarray:
-        """Return a mask of the segments whose variation exceeds a share of the typical friction."""
+        """Return a mask of segments whose standard deviation exceeds a share of the friction."""
         name = self.required_friction_signal
         return self.segment_stds(name) > least * self.typical_friction
 
     @cached_property
-    def lines(self) -> list[Line]:
-        """Spectral lines of the friction signal over all segments."""
+    def sliding_lines(self) -> list[Line]:
+        """Spectral lines of friction, except those of a reciprocation that was not recorded."""
         values = self.signals[self.required_friction_signal]
         significant = [
             segment_lines(self.time[part], values[part], number, self.speed_of(number))
@@ -311,7 +304,8 @@ class RunSubject:
         ]
         if all(lines is None for lines in significant):
             raise Skip("sampled too slowly or too shortly for a spectrum")
-        return [line for lines in significant for line in lines or []]
+        found = [line for lines in significant for line in lines or []]
+        return [line for line in found if not self.reversals[line.segment]]
 
     @cached_property
     def reversals(self) -> np.ndarray:
@@ -327,19 +321,10 @@ class RunSubject:
             ]
         )
 
-    @property
-    def sliding_lines(self) -> list[Line]:
-        """Spectral lines of friction, except those of a reciprocation that was not recorded."""
-        return [line for line in self.lines if not self.reversals[line.segment]]
-
     def unit(self, name: str) -> str:
         """Return the unit of a variable as text; "" for pure numbers."""
         unit = self.run[name].attrs.get("units", "")
         return "" if unit == "1" else unit
-
-    def noise(self, name: str) -> float:
-        """Return the noise of a signal between neighbouring samples, in its unit."""
-        return noise_level(self.signals[name])
 
 
 def _known(values: np.ndarray) -> np.ndarray:

@@ -23,7 +23,7 @@ def time_order(time: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     time
-        [s] (time)
+        Sample times [s].
 
     Returns
     -------
@@ -55,10 +55,10 @@ def time_gaps(
     Parameters
     ----------
     time
-        [s] (time)
+        Sample times [s].
     suspect
-        Length of a gap in local sampling intervals: the median of the three before or of the three
-        after, whichever is longer, so that a slower rate is not a gap.
+        Length of a gap in local sampling intervals. The local interval is the median of the three
+        before or of the three after, whichever is longer, so that a slower rate is not a gap.
     pauses
         Indices of samples before which the instrument paused on purpose.
 
@@ -123,7 +123,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     Parameters
     ----------
     time
-        [s] (time)
+        Sample times [s].
     suspect
         Robust standard deviation of an interval, relative to it, within a block of some 64
         samples, above which the whole block is flagged.
@@ -135,12 +135,12 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
 
     Notes
     -----
-    From the difference of neighbouring intervals over their mean, so that a change of the rate
-    within a block is one odd value among many: its median over 0.6745 sqrt(2).
+    The standard deviation is the median of |difference of neighbouring intervals| / mean, divided
+    by 0.6745 sqrt(2). A change of the rate within a block is then a single outlier.
     """
     if time.size < _BLOCK:
         return np.full(time.size, NOT_EVALUATED, np.int8)
-    # the change of an interval takes three samples
+    # two neighbouring intervals need three samples
     changes = time.size - 2
     blocks = max(1, changes // _BLOCK)
     edges = np.linspace(0, changes, blocks + 1).astype(int)
@@ -172,9 +172,9 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     Parameters
     ----------
     time
-        [s] (time)
+        Sample times [s].
     factor
-        Ratio of the intervals before and after that counts.
+        Smallest ratio of the intervals before and after that counts as a change.
 
     Returns
     -------
@@ -229,9 +229,9 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     Parameters
     ----------
     time
-        [s] (time)
+        Sample times [s].
     factor
-        Ratio of the mean intervals before and after that counts; gaps are not part of them.
+        Smallest ratio of the mean intervals before and after, without gaps, that is a change.
     stretch
         Number of samples over which a rate must be constant.
 

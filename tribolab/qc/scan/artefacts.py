@@ -18,7 +18,7 @@ _MIN_IN_BLOCK = 16
 # half widths of the band of heights at a noisy stop, relative to the roughness of the blocks
 _BANDS = 0.02 * np.sqrt(2.0) ** np.arange(11)
 _PILE_RATIO = 4.0  # points in the outermost band over those in the next one; 1.4 for rough summits
-_TRIM = 20  # up to so many points at an end of the range may be outliers
+_TRIM = 20  # up to this many points beyond the end of the range may be outliers
 
 
 def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int) -> np.ndarray:
@@ -99,7 +99,7 @@ def _baseline(height: np.ndarray) -> np.ndarray:
 
 
 def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, int] | None:
-    """Return the interval in which the stylus is stuck: a straight line with white noise at most.
+    """Return the interval in which the stylus is stuck: a straight line, except for white noise.
 
     Parameters
     ----------
@@ -119,8 +119,8 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
     Notes
     -----
     The heights of a smooth part of a surface resemble their neighbours; the noise of a gauge at
-    rest does not. Levelling can tilt the line. A profile that is mostly flat has flats and is not
-    stuck.
+    rest does not. Levelling can tilt the line. A profile that is mostly flat is a surface
+    with flats, not stuck.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def _widen(height: np.ndarray, first: int, last: int, near: float) -> tuple[int,
 
 
 def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
-    """Return a mask of points clipped at an end of the measuring range, with noise.
+    """Return a mask of points clipped at an end of the measuring range, where readings are noisy.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
     share
         Smallest share of the points.
     in_a_row
-        Smallest number of points in the longest run on the stop.
+        Smallest length of the longest sequence of clipped points.
 
     Notes
     -----

@@ -125,7 +125,7 @@ def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], floa
 
 
 def _computed_roughness(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
-    """Return the roughness that the instrument may have found: either cut-off, or levelled only."""
+    """Return roughness that the instrument may have computed: with a cut-off, or levelled only."""
     parameters = []
     for cutoff in ("auto", None) if np.isnan(cut) else (cut, None):
         try:
@@ -187,9 +187,7 @@ INSTRUMENT_CHECKS = (
         6,
         "Are the points of the scan evenly spaced?",
         "Export x with more digits, or the heights with only the pitch.",
-        {
-            "even": Limit(0.01, "1", "1 % of a step does not affect any wave"),
-        },
+        {"even": Limit(0.01, "1", "1 % of a step does not affect any wave")},
         _spacing,
     ),
     Check(

@@ -20,7 +20,7 @@ _BLOCK = 512  # number of points whose slopes are compared
 
 
 def end_points(marked: np.ndarray) -> np.ndarray:
-    """Return the marked points of each row (row, x) that form a sequence from one of its ends.
+    """Return a mask of the marked points (row, x) that reach an end of their row without a gap.
 
     Examples
     --------
@@ -41,8 +41,8 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     height
         Heights of one profile [m] (x); NaN if missing.
     factor
-        Smallest jump, in robust standard deviations of the differences between neighbours in the
-        surrounding 512 points (and in the quieter three quarters of the profile).
+        Smallest jump, in robust standard deviations of the differences between neighbours: those in
+        the surrounding 512 points or, if larger, the lower quartile over the profile.
 
     Returns
     -------
@@ -52,7 +52,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     Notes
     -----
     Slopes of rough profiles have long tails. A jump must therefore also be three times larger than
-    the second-largest elsewhere in its block, and larger than three digits.
+    the second-largest elsewhere in its block, and larger than three rounding steps.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
 
 
 def _spread(values: np.ndarray, middle: float) -> float:
-    """Return the robust standard deviation of differences; zeros are left out if they are most."""
+    """Return the robust standard deviation of differences; zeros are left out if most are zero."""
     away = np.abs(values[np.isfinite(values)] - middle)
     if not away.size:
         return 0.0
@@ -117,7 +117,7 @@ def flag_clipping(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> n
     fewest
         Smallest number of points in a row on the outermost height.
     noisy
-        Smallest share of the points clipped with noise.
+        Smallest share of the points clipped at a noisy stop; 1 to ignore noisy stops.
 
     Returns
     -------

@@ -9,13 +9,7 @@ from tribolab.core.errors import AnalysisError, Cure
 from tribolab.core.provenance import history_line
 from tribolab.surface.character import self_affinity_objection
 from tribolab.surface.form import remove_form, removed_order
-from tribolab.surface.gaps import (
-    bridge_gaps,
-    cut_ends,
-    effective_values,
-    gap_cutoff,
-    gaps_in,
-)
+from tribolab.surface.gaps import bridge_gaps, cut_ends, effective_values, gap_cutoff, gaps_in
 from tribolab.surface.level import level_rows, refuse_level
 from tribolab.surface.spectra import abel
 from tribolab.surface.spectra.annuli import annular_spectrum, bins_of, confidence_band, merge_annuli

@@ -94,10 +94,7 @@ def survey(record: EvenRecord) -> Survey | None:
 
 
 def _survey(
-    fine: Spectrum,
-    duration: float,
-    mains: tuple[Mains, ...],
-    background: np.ndarray | None = None,
+    fine: Spectrum, duration: float, mains: tuple[Mains, ...], background: np.ndarray | None = None
 ) -> Survey:
     middle, power, width, freedom, first = bands(fine, limits.BANDS_PER_DECADE.value)
     if background is None:

@@ -1,4 +1,4 @@
-"""Checks on the time and on each signal, sample by sample."""
+"""Checks on each signal, sample by sample: missing, stuck, clipped, coarse, outlying values."""
 
 from __future__ import annotations
 
@@ -7,120 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribolab.arrays.chunks import anywhere, one_by_one
-from tribolab.arrays.scratch import filled
-from tribolab.core.errors import AnalysisError, shown
+from tribolab.arrays.chunks import one_by_one
+from tribolab.core.errors import AnalysisError
 from tribolab.core.limit import Limit
 from tribolab.core.wording import Count
-from tribolab.friction.oscillation.spectrum.noise import quantisation_step
+from tribolab.friction.oscillation.spectrum.noise import noise_level, quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.qc.register import OBJECTIONS, Check, Result, Skip, sample_result
-from tribolab.qc.run import schema, timing
 from tribolab.qc.run.subject import RunSubject
+from tribolab.qc.run.timing import time_gaps
 from tribolab.reading.dialect.formula import names_in, parse_formula
-
-_DEAD_CHANNEL = 0.10  # share of missing samples; a tenth of a signal can be whole segments
-
-
-def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    run = subject.run
-    results = [Result("suspect", "", text, cure=cure) for text, cure in schema.missing_signals(run)]
-    for name, unit in schema.wrong_units(run).items():
-        results.append(Result("fail", name, f"{name} is in '{shown(unit)}', not in SI"))
-    for name, span in one_by_one(schema.ranges().items()):
-        if name not in run:
-            continue
-        flags = schema.flag_range(run[name].values, span)
-        text = f"{{count:value|values}} outside {span.low:g} to {span.high:g}: "
-        text += f"{span.reason}; {{where}}"
-        results.append(sample_result(name, flags, subject.time, text))
-    if "normal_force" in run:
-        share = schema.tensile_share(run["normal_force"].values)
-        if share > limits["pulled"]:
-            text = f"the normal force is negative in {share:.0%} of the loaded samples"
-            results.append(Result("fail", "normal_force", text, share))
-    return results
-
-
-def _time_order(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    flags = timing.time_order(subject.time)
-    text = "time does not increase at {count:sample|samples}, {where}"
-    return [sample_result("time", flags, subject.time, text)]
-
-
-def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    time = subject.time
-    flags = timing.time_gaps(time, limits["intervals"], _step_changes(subject))
-    if not anywhere(lambda part: part == SUSPECT, flags):
-        return [sample_result("time", flags, time, "")]
-    lost = timing.lost_time(time, flags)
-    longest = float(timing.lengths_of_gaps(time, flags).max())
-    text = f"{{count:gap|gaps}} in time, the longest {longest:.4g} s, {{where}}"
-    # no segment extends across a long pause, and the parts between pauses are complete
-    parts = np.diff(np.concatenate([[0], np.flatnonzero(flags == SUSPECT), [flags.size]]))
-    if lost > limits["lost"] and np.median(parts) < limits["whole"]:
-        flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)
-    return [sample_result("time", flags, time, text, value=lost)]
-
-
-def _time_jitter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    flags = timing.time_jitter(subject.time, limits["scatter"])
-    text = "the sampling interval varies over {count:sample|samples}, {where}"
-    return [sample_result("time", flags, subject.time, text)]
-
-
-def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    time = subject.time
-    cuts = []
-    for part in subject.slices if subject.sliding else []:
-        cut = timing.rate_change(time[part], limits["factor"])
-        if cut is not None:
-            cuts.append(part.start + cut)
-    if cuts:
-        flags = filled(time.size, GOOD, np.int8)
-        flags[cuts] = SUSPECT
-        text = "the sampling rate changes within a segment {count:time|times}, {where}"
-        return [sample_result("time", flags, time, text)]
-    places = timing.rate_changes(time, limits["factor"])
-    text, where = "one sampling rate", ", ".join(f"t = {time[p]:.6g} s" for p in places[:5])
-    if places.size:
-        text = f"the sampling rate changes {Count(places.size):time|times}"
-        text += f", never within a trimmed segment: {where}" + (" ..." if places.size > 5 else "")
-    seen, flags = places.size > 0, uniform(time.size, GOOD)
-    return [Result("pass", "time", text, float(places.size), where=where, flags=flags, noted=seen)]
-
-
-_COUNTER = 0.1  # share of the samples above which a changing number counts turns, not steps
-
-
-def _step_changes(subject: RunSubject) -> np.ndarray:
-    """Return the indices of samples at which a step or cycle of the instrument begins."""
-    changed = np.zeros(subject.time.size, dtype=bool)
-    for name in ("step", "cycle"):
-        if name in subject.run:
-            label = subject.run[name].values
-            other = label[1:] != label[:-1]
-            if other.sum() < _COUNTER * other.size:
-                changed[1:] |= other
-    return np.flatnonzero(changed)
-
-
-def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    joined = subject.about.clock_joined
-    joins = [Result("pass", "time", joined, noted=True)] if joined else []
-    if not {"step", "cycle"} & set(subject.run):
-        if joined:
-            return joins
-        raise Skip("the file has no step or cycle numbers")
-    changes = _step_changes(subject)
-    if not changes.size:
-        return joins or [Result("pass", "step", "one step", 1.0)]
-    text = f"the file contains {changes.size + 1} steps"
-    where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
-    where += " ..." if changes.size > 5 else ""
-    text += f"; the first one ends at {where}"
-    return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True), *joins]
 
 
 def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -181,7 +78,7 @@ def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
 
 
 def _is_stated(subject: RunSubject, name: str) -> bool:
-    """Return whether a force is computed from stated values only, which may change by step."""
+    """Return whether a force is computed only from stated values, e.g. one load for each step."""
     formula = subject.about.derived.get(name)
     if formula is None or formula == "stated":
         return formula is not None
@@ -212,7 +109,7 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
         if _is_stated(subject, name):
             results.append(Result("pass", name, "stated and not measured", 0.0))
             continue
-        step, noise = quantisation_step(values), subject.noise(name)
+        step, noise = quantisation_step(values), noise_level(values)
         if step == 0:
             text = "values do not repeat: no quantisation visible"
             results.append(Result("pass", name, text, 0.0))
@@ -248,8 +145,8 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _step_borders(subject: RunSubject) -> np.ndarray:
-    """Return the samples on both sides of each start of a step or of a continued record."""
-    starts = np.flatnonzero(timing.time_gaps(subject.time) == SUSPECT)
+    """Return indices of the samples before and after each start of a step, or gap in time."""
+    starts = np.flatnonzero(time_gaps(subject.time) == SUSPECT)
     steps = subject.run.get("step")
     if steps is not None:
         starts = np.concatenate([starts, np.flatnonzero(np.diff(steps.values)) + 1])
@@ -257,7 +154,7 @@ def _step_borders(subject: RunSubject) -> np.ndarray:
 
 
 def _mean_shift(values: np.ndarray, flags: np.ndarray) -> float:
-    """Return the relative change of a signal's mean magnitude by its outliers."""
+    """Return by what share the outliers change the mean magnitude of a signal."""
     places = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
     before, after = np.maximum(places - 1, 0), np.minimum(places + 1, values.size - 1)
     usual = 0.5 * (values[before] + values[after])
@@ -285,68 +182,7 @@ def _sticks_and_slips(subject: RunSubject) -> bool:
         return False
 
 
-RECORD_CHECKS = (
-    Check(
-        "schema",
-        0,
-        "Do the signals exist, in SI units, and within physical limits?",
-        "Correct quantity, unit, sign or scale of the column in the dialect.",
-        {"pulled": Limit(0.5, "1", "bodies that are separated most of the time do not slide")},
-        _schema,
-    ),
-    Check(
-        "time_order",
-        1,
-        "Does time increase from sample to sample?",
-        "Export the file again, or state in the dialect what to do ([time]).",
-        {},
-        _time_order,
-    ),
-    Check(
-        "time_gaps",
-        2,
-        "Are there gaps in time?",
-        "Check whether the logger lost data or paused. Segments end at long gaps.",
-        {
-            "intervals": Limit(5.0, "1", "late buffers cause gaps of 2 to 3 intervals"),
-            "lost": Limit(
-                0.2, "1", "if a fifth is missing, the record does not represent the experiment"
-            ),
-            "whole": Limit(100, "1", "this many samples between pauses are a separate record"),
-        },
-        _time_gaps,
-    ),
-    Check(
-        "time_jitter",
-        3,
-        "Are the samples evenly spaced?",
-        "Spectra need correct times: use a hardware clock for the logger.",
-        {"scatter": Limit(0.25, "1", "larger scatter smears lines of the spectrum")},
-        _time_jitter,
-    ),
-    Check(
-        "rate_changes",
-        4,
-        "Does the sampling rate change within a segment?",
-        "Means are weighted by time, but spectra and errors need one rate. Set the rate "
-        "of the logger before the segment starts.",
-        {
-            "factor": Limit(
-                1.5,
-                "1",
-                ("more than the drift of a clock, less than a step between logger settings"),
-            )
-        },
-        _rate_changes,
-    ),
-    Check(
-        "restarts",
-        5,
-        "Does the file contain several steps with separate headers or clocks?",
-        "No action needed: the steps are joined as stated in the dialect.",
-        {},
-        _restarts,
-    ),
+SIGNAL_CHECKS = (
     Check(
         "missing",
         6,
@@ -354,7 +190,7 @@ RECORD_CHECKS = (
         "Look for error codes and empty cells in these rows of the file.",
         {
             "suspect": Limit(1e-3, "1", "single missing samples do not affect a mean"),
-            "fail": Limit(_DEAD_CHANNEL, "1", "if a tenth is missing, whole segments are affected"),
+            "fail": Limit(0.10, "1", "if a tenth is missing, whole segments are affected"),
         },
         _missing,
     ),
