@@ -68,7 +68,7 @@ def read_kept(path: str | Path, group: str | None = None) -> xr.Dataset:
     Raises
     ------
     ReadError
-        As `read_netcdf`.
+        As for `read_netcdf`.
     """
     path = Path(path)
     data = _KEPT.groups(path).get(group) if path.is_file() else None

@@ -1,8 +1,8 @@
 """Data files that the running command wrote itself, which need no isolation when read back.
 
-Results are written to ``<room>/new/data``, while ``<room>.lock`` is locked by the command. Files of
-earlier results are linked into it, so that they have two names; copies, where links are
-unsupported, are older than the lock.
+Results are written to ``new/data`` in a staging folder, while the command locks the file
+``<folder>.lock``. Files of earlier results are linked into it, and so have two names; if links are
+unsupported, they are copied, and are older than the lock.
 """
 
 from __future__ import annotations

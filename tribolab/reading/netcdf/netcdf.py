@@ -248,7 +248,7 @@ _groups_in_child = isolated("netCDF4", "h5py", "xarray")(_groups_of)
 
 @contextlib.contextmanager
 def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
-    """Open a file that contains no references to external data."""
+    """Open a netCDF file for reading; any error of the library is reported as damage."""
     # imported late: netCDF4 loads slowly
     import netCDF4
 
@@ -274,7 +274,7 @@ def _group(file: netCDF4.Dataset, group: str | None, only: Collection[str] | Non
         return plain
     store = xr.backends.NetCDF4DataStore(file, group=group)
     for variable in (file if group is None else file[group]).variables.values():
-        if is_long(variable.size):  # else the library caches much of it until the file is closed
+        if is_long(variable.size):  # by default much of it is cached until the file is closed
             variable.set_var_chunk_cache(_CACHE)
     data = xr.open_dataset(store, decode_times=False, mask_and_scale=False)
     if only is not None:

@@ -1,7 +1,7 @@
 """Seal of files written by tribolab: a checksum that reveals damage on reading.
 
-`seal` appends the SHA-256 of a file, where HDF5 does not read; `check_seal` refuses a file that
-does not match it. The seal has no key: it detects damage, not forgery.
+`seal` appends the SHA-256 of a file to its end, which HDF5 does not read; `check_seal` refuses a
+file whose content does not match it. The seal has no key: it detects damage, not forgery.
 """
 
 from __future__ import annotations

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 CHUNK = 65_536  # samples; a default chunk would be the whole array
 _MIN_COMPRESSED = 1024  # values; shorter arrays are not compressed
-_COMPRESSION = 1  # higher levels do not reduce noise
+_COMPRESSION = 1  # higher levels hardly compress noise better
 _MAX_SHARE = 0.95  # compressed share of the bytes above which compression is not worthwhile
-_BLOCKS, _BLOCK = 4, 1024  # number and length of the samples for choosing a filter
+_BLOCKS, _BLOCK = 4, 1024  # number and length of the pieces from which the filter is chosen
 _PIECE = 16 * CHUNK  # samples passed to the library at once, as it copies them
 _CACHE = 1 << 20  # bytes that the library caches per variable; enough for whole chunks
 # attributes that xarray interprets
@@ -45,8 +45,8 @@ def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -
 
     Notes
     -----
-    xarray reads the same as from a file written by itself. Rare types (truth values, dates, an
-    existing group) are written by xarray.
+    xarray reads such a file as if it had written it. Rare cases (truth values, dates, an existing
+    group) are written by xarray.
     """
     waiting: list[tuple[netCDF4.Variable[Any], np.ndarray]] = []
     left: dict[str | None, xr.Dataset] = {}

@@ -135,8 +135,8 @@ def validate(
     Parameters
     ----------
     data
-        Run or scan as read, or a table in SI. Columns unknown to the schema, and its optional
-        columns, are ignored.
+        Run or scan as read, or a table in SI. Columns that the schema does not list
+        are ignored, and its optional columns may be missing.
     schema
         As for `load_schema`.
 
@@ -196,7 +196,7 @@ def _broken(
     unit: str | None,
     empty: list[str],
 ) -> Iterator[_Broken]:
-    """Yield what violates the rules of a column; of a wrong unit or type nothing else."""
+    """Yield the violations in a column; after a wrong unit or type, no other rule is checked."""
     name, kind = field["name"], field.get("type", "string")
     if unit is not None and "unit" in field and not _same_unit(unit, field["unit"]):
         yield _Broken([None], name, [unit], "unit", field["unit"])

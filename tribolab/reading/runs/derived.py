@@ -24,7 +24,10 @@ from tribolab.units.quantities import QUANTITIES, quantity
 
 _LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: light load, and no load
 _MIN_SAMPLES_OF_ZERO = 20  # samples needed for a zero
-_MOVES, _ONE_SPEED = 0.5, 0.1  # shares of the usual speed: starting, and same speed
+_MOVES, _ONE_SPEED = (
+    0.5,
+    0.1,
+)  # shares of the usual speed: moving above it; largest deviation of one speed
 _NO_CONTACT = 0.02  # share of the greatest normal stress below which there is no contact
 
 
@@ -110,7 +113,7 @@ def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: D
 def _add_ratio_of_stresses(
     columns: dict[str, np.ndarray], formulas: dict[str, str], attrs: Json
 ) -> None:
-    """Add the friction coefficient of a run of stresses; their zeros are subtracted and noted."""
+    """Add the friction coefficient of a run with shear and normal stress; subtract their zeros."""
     slides = {"sliding_velocity", "position", "rotation_speed", "set_speed"} & set(columns)
     known = {"friction_force", "friction_coefficient"} & set(columns)
     if known or not slides or not {"shear_stress", "normal_stress"} <= set(columns):
@@ -130,7 +133,7 @@ def _add_ratio_of_stresses(
 
 
 def _without_contact(normal: np.ndarray) -> np.ndarray:
-    """Return a mask of samples without contact: one level far below the usual stress."""
+    """Return a mask of the samples without contact, whose normal stress is constant and small."""
     usual = np.nanpercentile(np.abs(normal), 75)
     light = np.abs(normal) < _LIGHT * usual
     if np.count_nonzero(light) < _MIN_SAMPLES_OF_ZERO:
@@ -151,7 +154,7 @@ def _evaluated(
 
 
 def _stated_zeros(formulas: Mapping[str, str], dialect: Dialect) -> Json:
-    """Return which stated zeros of the friction are subtracted by formulas."""
+    """Return the names of stated zeros that the formula of the friction force contains."""
     zeros = {value.name for value in dialect.value if value.name.endswith("_zero")}
     return {
         name: ", ".join(sorted(zeros & names_in(parse_formula(formula))))
@@ -176,6 +179,6 @@ def _operands(
 
 
 def _number(value: Value, attrs: Json) -> float | None:
-    """Return a value outside the table, if it is available and numeric."""
+    """Return a value outside the table; None if it is not available or no number."""
     number = attrs.get(value.attribute) if value.unit is not None else None
     return float(number) if isinstance(number, float | int) else None

@@ -1,4 +1,4 @@
-"""Summary of the interpretation of one raw file, and of its second log."""
+"""Summary of how one raw file and its second log were interpreted."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tribolab.units.quantities import QUANTITIES
 
 
 class ColumnFacts(TypedDict):
-    """Label of a quantity, and its range in SI."""
+    """Column of a quantity: label in the file, SI unit, minimum and maximum."""
 
     label: str
     unit: str
@@ -31,7 +31,7 @@ class ColumnFacts(TypedDict):
 
 
 class FileFacts(TypedDict):
-    """Interpretation of a raw file; see `file_facts`."""
+    """Summary of how a raw file was interpreted; see `file_facts`."""
 
     file: str
     instrument: str
@@ -168,7 +168,7 @@ def has_companion(path: Path, instrument: str | Path | None = None) -> bool:
 
 
 def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:
-    """Return the dialect of a main log with a second log."""
+    """Return the dialect of a file if it is a main log with a second log; else None."""
     if instrument is None and peek(path).format == "netcdf":
         return None
     dialect = load_dialect(instrument) if instrument else recognise(path)

@@ -58,7 +58,7 @@ def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
     loaded = normal > _LOADED * normal.max()
     if loaded.sum() < _MIN_LOADED_ROWS:
         return ""
-    # a reciprocating drive passes through zero, so the median of the forces is not their size
+    # friction passes through zero at each reversal, so its median would be too small
     ratio = float(np.percentile(friction[loaded], 75) / median(normal[loaded]))
     if ratio == 0 or SMALLEST <= ratio <= LARGEST:
         return ""
@@ -66,8 +66,8 @@ def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
     return f"{text}: are the two swapped, or a unit wrong?"
 
 
-_APART = 0.02  # relative; both come from the same readings, rounded to three digits
-_PRESSED = 0.1  # share of the largest load that presses
+_APART = 0.02  # largest relative difference; both are computed from readings of three digits
+_PRESSED = 0.1  # share of the largest load above which the contact is loaded
 _MIN_ROWS = 5  # rows needed
 _FORCES = ("friction_force", "normal_force")
 
@@ -75,8 +75,8 @@ _FORCES = ("friction_force", "normal_force")
 def keep_forces_that_agree(columns: dict[str, np.ndarray], attrs: Json) -> None:
     """Remove computed forces whose ratio contradicts the recorded coefficient.
 
-    Contact forces follow from torque and axial force by the geometry. If the file also has the
-    coefficient, it shows whether the geometry is right.
+    Forces in the contact are computed from torque and axial force with the geometry of the rig. If
+    the file also has the friction coefficient, comparing the two tests this geometry.
 
     Parameters
     ----------

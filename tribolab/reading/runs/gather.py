@@ -77,7 +77,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     time = mended.time
     if mended.keep is not None:
         time = chosen(time, mended.keep)
-        for name in columns:  # one by one, so that removed rows are freed
+        for name in columns:  # one at a time, to free the memory of removed rows
             columns[name] = chosen(columns[name], mended.keep)
     rows = len(time)
     time, columns, together = sampled_together(columns, time)
@@ -115,7 +115,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
 
 
 def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[str, str]:
-    """Return the source of the zeros of computed quantities."""
+    """Return the interval in which the zero of each computed quantity is read, by quantity."""
     rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
     rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
     derived = RunAttributes.from_attrs(attrs).derived
@@ -148,7 +148,7 @@ def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:
 
 
 def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]:
-    """Return the arrays of the whole run, with ``step`` and ``cycle`` if there are several."""
+    """Return the arrays of the whole run, with ``step`` and ``cycle`` if it has several."""
     pieces = [piece for content in contents for piece in content.pieces]
     lengths = [len(piece.columns["time"]) for piece in pieces]
     names = dict.fromkeys(name for piece in pieces for name in piece.columns)

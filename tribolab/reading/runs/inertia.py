@@ -107,7 +107,7 @@ def _derivative(time: np.ndarray, values: np.ndarray, order: int, half: int) -> 
 
 
 def _weights(order: int, half: int) -> np.ndarray:
-    """Return the weights of a window's samples in the derivative of its parabola, per spacing."""
+    """Return the weights of a window's samples that give the derivative of a fitted parabola."""
     place = np.arange(-half, half + 1.0)
     if order == 1:
         return np.asarray(place / np.sum(place**2))
@@ -123,7 +123,7 @@ def take_inertia(run: xr.Dataset, mass: float, where: str, **stated: str | float
     run
         Run with ``friction_force`` and ``position`` or ``sliding_velocity`` (time).
     mass
-        Between contact and sensor [kg].
+        Mass between contact and force sensor [kg].
     where
         The run, for messages.
     **stated
@@ -134,7 +134,8 @@ def take_inertia(run: xr.Dataset, mass: float, where: str, **stated: str | float
     xarray.Dataset
         The run with ``inertial_force`` [N] (time), which is subtracted from ``friction_force``.
         Attributes ``moving_mass_kg``, ``inertial_force_largest_N`` (99.9 % quantile) and
-        ``inertial_force_noise_N`` (its noise from the motion signal).
+        ``inertial_force_noise_N`` (its standard error, due to noise of the motion
+        signal).
 
     Raises
     ------

@@ -52,7 +52,7 @@ def group_files(
 
 
 def companion_path(path: Path, dialect: Dialect) -> Path | None:
-    """Return the expected path of a file's second log; None if its name has none."""
+    """Return the expected path of a file's second log; None if the name is not a main log's."""
     rule = dialect.pair
     if rule is None or not path.stem.endswith(rule.own):
         return None
@@ -60,7 +60,7 @@ def companion_path(path: Path, dialect: Dialect) -> Path | None:
 
 
 def companion_name(path: Path, dialect: Dialect) -> str:
-    """Return the expected name of a file's second log; "" if there is one log only."""
+    """Return the expected name of a file's second log; "" if the instrument writes one log only."""
     if dialect.pair is None:
         return ""
     other = companion_path(path, dialect)

@@ -1,4 +1,4 @@
-"""Runs as netCDF, written by tribolab or others."""
+"""Reading of runs from netCDF files, written by tribolab or other programs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tribolab.units.quantities import QUANTITIES
 
 _NUMBERS = "fiub"
 _DESCRIBE = "of others a description says which is which (raw_data_schema/README.md)"
-# expected types of used attributes; others are ignored
+# expected types of attributes that tribolab uses; values of other types are ignored
 _KINDS: Mapping[str, type | tuple[type, ...]] = {"columns_used": dict, "findings": (list, tuple)}
 _UNITS = ("_s", "_m", "_N", "_m_s", "_m_per_s", "_Hz", "_K", "_Pa")
 _COUNTS = {"rows_not_covered", "rows_left_out", "rows_in_file"}
@@ -32,7 +32,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     path
         The file.
     content
-        Path of its content, if it is compressed.
+        Path of the unpacked content, if the file is compressed.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     cure = "columns of one length, with names and units, are read as they are: " + _DESCRIBE
     try:
         run = read_netcdf(content or path, group="run?")
-    except CrashedError as error:  # HDF5 other than netCDF may still be valid
+    except CrashedError as error:  # the library can crash on valid HDF5 that is not netCDF
         check_self_contained(content or path)
         what = "this HDF5 file is no netCDF"
         raise UnknownFileError(what, where=path, cure=cure) from error

@@ -40,7 +40,7 @@ def read_run(
     zero: str | None = None,
     moving_mass: str | float | None = None,
 ) -> xr.Dataset:
-    """Read one run from its raw file or files; names are not patterns.
+    """Read one run from its raw file or files; wildcards in names are not expanded.
 
     Parameters
     ----------
@@ -195,12 +195,14 @@ def _split_companions(
 
 
 def _companion(path: Path, dialect: Dialect) -> LogDialects:
-    """Return the companion log, if the instrument writes one and it is next to the file."""
+    """Return the companion log of a file as a list; empty if there is none in the same folder."""
     other = companion_path(path, dialect)
     if other is None or dialect.pair is None or not other.exists():
         return []
     check_regular(other)
-    if other.is_symlink() and not path.is_symlink():  # git-annex and DataLad link all of a run
+    if (
+        other.is_symlink() and not path.is_symlink()
+    ):  # git-annex and DataLad replace every file of a run by a link
         raise ReadError(
             f"the companion log {shown(other.name)} is a link to {other.resolve()}; tribolab reads "
             "no data from elsewhere unless you name them",

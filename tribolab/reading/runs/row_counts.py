@@ -1,9 +1,8 @@
-"""Numbers of rows in a run's files and of rows left out, with reasons, as attributes.
+"""Attributes that count the rows of a run: in its files, left out, or with interpolated time.
 
-``rows_in_file``; if rows were left out also ``rows_left_out`` and ``rows_left_out_why``;
-``rows_time_interpolated``. For a
-companion log the same with the prefix ``companion_``; ``rows_not_covered`` counts rows of the first
-log outside the range of the companion.
+``rows_in_file`` is always set, ``rows_left_out`` and ``rows_left_out_why`` if rows were left out,
+``rows_time_interpolated`` if times were interpolated. A companion log has the first three with the
+prefix ``companion_``; ``rows_not_covered`` counts the rows of the main log outside its range.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why")
 
 
 def row_attributes(kept: int, contents: list[Content], mended: Mended) -> Json:
-    """Count the rows of a run's files.
+    """Return the attributes that count the rows of a run's files, and the rows left out.
 
     Parameters
     ----------
@@ -72,7 +71,7 @@ def rows_in_words(attrs: Mapping[str, Any]) -> str:
 
 
 def with_companion_rows(merged: Signals, run: Signals, motion: Signals) -> Signals:
-    """Add the row counts of both logs, and the rows covered by one only, to a merged run.
+    """Add the row counts of the companion log, and the rows that it does not cover, to a run.
 
     Parameters
     ----------

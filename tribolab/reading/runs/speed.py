@@ -62,7 +62,7 @@ def keep_settings(
     where: str,
     dialect: Dialect,
 ) -> dict[str, np.ndarray]:
-    """Store columns of radius, stroke or frequency as settings, before they are removed.
+    """Store radius, stroke or frequency given in columns, before these columns are removed.
 
     Parameters
     ----------
@@ -182,10 +182,11 @@ def _by_strokes_of_steps(
     dialect: Dialect,
     of_steps: Mapping[str, np.ndarray],
 ) -> None:
-    """Compute the velocity of strokes for each step, with its own length and frequency.
+    """Compute the sliding velocity if stroke or frequency differ between steps.
 
-    A frequency of zero is a rest. If friction reverses in no step, it has no sign or rows are
-    means: then the mean speed of the strokes is the set speed of each row.
+    A step with a frequency of zero is a rest. If friction reverses in no step, it was recorded
+    without its sign or as means over cycles; then the mean speed of the strokes is stored as
+    ``set_speed``.
     """
     changes = [np.flatnonzero(np.diff(values)) + 1 for values in of_steps.values()]
     bounds = np.unique(np.concatenate([[0], *changes, [len(time)]]))
@@ -193,7 +194,7 @@ def _by_strokes_of_steps(
         columns["step"] = np.repeat(np.arange(1, len(bounds)), np.diff(bounds)).astype(np.int32)
     velocity, mean_speed = np.zeros(len(time)), np.zeros(len(time))
     steps: list[Json] = []
-    without: list[tuple[int, int, float]] = []  # without reversal of friction, and its frequency
+    without: list[tuple[int, int, float]] = []  # rows and frequency of steps without reversal
     for first, stop in zip(bounds[:-1], bounds[1:], strict=True):
         if any(values[first] == 0 for values in of_steps.values()):
             continue
@@ -274,7 +275,7 @@ def level_of_each(values: np.ndarray) -> np.ndarray | None:
     return result
 
 
-_VARIES = 0.1  # relative; the stroke of a magnetic drive is controlled to some per cent
+_VARIES = 0.1  # relative variation of one setting; magnetic drives control it to some per cent
 _SIGNALS = ("friction_force", "friction_coefficient", "shear_stress")
 
 

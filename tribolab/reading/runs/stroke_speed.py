@@ -1,4 +1,4 @@
-"""Sliding velocity of a rig with known stroke and frequency only."""
+"""Sliding velocity of a reciprocating rig that records neither position nor speed."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 Drive = Literal["crank", "constant speed"]
-_TELLS = 0.3  # share of the friction's variance that must be at the frequency
+_TELLS = 0.3  # least share of the variance of friction at the set frequency
 _AT_REST = 0.3  # share of the usual amplitude below which a cycle does not slide
-_WHOLE = 0.85  # share above which a cycle next to a rest slides completely
+_WHOLE = 0.85  # share of the usual amplitude above which a cycle next to a rest is complete
 _OTHER = 0.1  # relative tolerance of the drive's frequency
 _AS_LOUD = 0.5  # share of the usual variance above which a cycle is not at rest
-_SMALL_SHARE = 0.05  # share of the sliding cycles
+_SMALL_SHARE = 0.05  # share of the sliding cycles, below which unlike cycles are ignored
 FEWEST_CYCLES = 3
-DENSEST = 8  # samples per cycle, at least: of fewer, only the mean speed is known
+DENSEST = 8  # fewest samples per cycle; with fewer, only the mean speed is known
 
 
 class StrokeVelocity(NamedTuple):
     """Sliding velocity [m/s] (time), and frequency of friction [Hz].
 
-    `unlike` is the duration [s] with other reversals of friction than stated; there the velocity is
-    zero.
+    `unlike` is the time [s] in which friction varies, but not at the set frequency; the velocity is
+    set to zero there.
     """
 
     velocity: np.ndarray

@@ -16,9 +16,9 @@ from tribolab.arrays.medians import median
 from tribolab.core.untyped import Json
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 
-_MAX_SHARE = 0.6  # largest share of rows with a value of a slower signal
+_MAX_SHARE = 0.6  # largest share of rows in which a slower signal has a value
 _MIN_VALUES = 8  # values needed to determine a rate
-_EVEN = 2.0  # most of the usual distance for 95 % of the distances
+_EVEN = 2.0  # largest ratio of distances between values (95 % quantile) to their median
 _GAP = 3.0  # multiple of the usual distance above which a gap is not bridged
 
 
@@ -80,7 +80,12 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
         keep[:] = False
         keep[seldom[lead]] = True
         attrs["rows_without_friction"] = int(time.size - seldom[lead].size)
-    for name, rows in seldom.items():  # the first and last interval have one end only
+    for (
+        name,
+        rows,
+    ) in (
+        seldom.items()
+    ):  # leave out rows before the first and after the last value of a slower signal
         longest = int(np.diff(rows).max())
         if name != lead and rows[0] <= longest:
             keep[: rows[0]] = False
@@ -94,7 +99,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
 
 
 def _rows(values: np.ndarray) -> np.ndarray | None:
-    """Return the rows with a value, if a signal has one at regular distances; else None."""
+    """Return the rows in which a slower signal has a value; None unless they are evenly spaced."""
     count = sum(int(np.isfinite(values[a:b]).sum()) for a, b in pieces(0, values.size))
     if not _MIN_VALUES <= count <= _MAX_SHARE * values.size:
         return None
@@ -106,7 +111,7 @@ def _rows(values: np.ndarray) -> np.ndarray | None:
 
 
 def _interpolated(time: np.ndarray, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return interpolated values; NaN outside the range of known ones and in gaps."""
+    """Return values interpolated between known ones; NaN outside their range and in gaps."""
     known = time[rows]
     between = np.interp(time, known, values[rows], left=np.nan, right=np.nan)
     after = np.clip(np.searchsorted(known, time), 1, known.size - 1)

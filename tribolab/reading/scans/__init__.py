@@ -1,1 +1,1 @@
-"""Scans without a dialect: profiles and maps of heights."""
+"""Reading of scans: profiles and maps of heights."""

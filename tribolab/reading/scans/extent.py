@@ -149,7 +149,7 @@ def _axes(scan: xr.Dataset) -> tuple[str, ...]:
 
 
 def _reach_and_slope(x: np.ndarray, height: np.ndarray) -> tuple[float, float]:
-    """Return the height range of a line without its bow over its length, and its rms slope."""
+    """Return height range divided by length, and rms slope, of a line without its curvature."""
     rest = height - np.polynomial.Polynomial.fit(x, height, 2)(x)
     reach = float(np.ptp(np.percentile(rest, _USUAL))) / float(x[-1] - x[0])
     return reach, float(np.sqrt(np.mean((np.diff(rest) / np.diff(x)) ** 2)))

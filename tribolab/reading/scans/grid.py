@@ -9,20 +9,20 @@ from tribolab.arrays.medians import median
 from tribolab.core.errors import ReadError
 
 _JITTER = 0.01  # largest deviation from an even grid, in pitches, that is ignored
-_LARGEST = 1e4  # m
+_LARGEST = 1e4  # m; longest profile
 _MIN_SPACING = 1e-15  # m, about the size of a nucleus
 _FILLED = 0.5  # share of grid points that must have heights
 _CLOUD = (
     "of points that lie freely, as on circles, write each line as a profile (distance, height), or "
     "interpolate them to a grid"
 )
-_ROUNDED = 0.6  # in units of the last digit
+_ROUNDED = 0.6  # largest deviation due to rounding, in units of the last digit
 
 
 def even(
     where: str, x: np.ndarray, height: np.ndarray
 ) -> tuple[float, np.ndarray, dict[str, float | str]]:
-    """Interpolate a profile to an even grid.
+    """Return a profile on an even grid, interpolated if its positions are uneven.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def even(
 
 
 def _last_digit(x: np.ndarray) -> float:
-    """Return the last decimal digit of the positions [m] as a length; 0 if unknown."""
+    """Return the length of one unit in the last digit of positions [m]; 0 if unknown."""
     for power in range(-4, -13, -1):
         counts = x / 10.0**power
         if np.abs(counts - np.round(counts)).max() < 1e-3:
@@ -96,7 +96,7 @@ def _last_digit(x: np.ndarray) -> float:
 
 
 def rounder_pitch(length: float, points: int) -> float:
-    """Return the pitch for a length to the last point or one step beyond it; the rounder one.
+    """Return the rounder pitch for a length that ends at the last point or one step beyond it.
 
     >>> rounder_pitch(2e-4, 400), rounder_pitch(1.995e-4, 400)
     (5e-07, 5e-07)

@@ -25,10 +25,10 @@ from tribolab.reading.scans.unit_words import (
 )
 from tribolab.units.spellings import unit_of_length
 
-_MAX_COUNT = 1e9  # of steps of a resolution
+_MAX_COUNT = 1e9  # most steps of a height resolution
 _MAX_LINE = 300  # most characters of a line
-_MAX_NUMBERS = 2  # in an entry; more are a date, a time, or a row of results
-_BLANKED = str.maketrans(";[](){}", "       ")  # between a number and its unit
+_MAX_NUMBERS = 2  # most in an entry; more are a date, a time, or a row of results
+_BLANKED = str.maketrans(";[](){}", "       ")  # marks that may stand between a number and its unit
 _COMMA = re.compile(r"(?<!\d),|,(?!\d)")
 
 
@@ -36,9 +36,9 @@ class MapHeader(NamedTuple):
     """Statements above a map: pitch along x and y [m], unit of heights [m], rows and columns.
 
     Missing or contradictory values are None. `along` [m] is the unit of positions. `stated` are
-    names and numbers without units; `gauge_step` [m] is the possible unit of integers;
-    `without_unit` is a pitch or extent without unit, e.g. "cellsize 0.005". `doubt` describes an
-    assumption. `sizes` are numbers on the heights with their unit [m], e.g. their range.
+    names and numbers without units. `gauge_step` [m] is the height of one count, if heights are
+    counts. `without_unit` is a pitch or extent without unit, e.g. "cellsize 0.005". `doubt`
+    describes an assumption. `sizes` are numbers on the heights with their unit [m], e.g. a range.
     """
 
     dx: float | None
@@ -55,7 +55,7 @@ class MapHeader(NamedTuple):
 
 
 class _Entry(NamedTuple):
-    """Name with its numbers and their units of length ("" without), and the axes it names."""
+    """Name in a header with its numbers, their units of length ("" without), and if per point."""
 
     key: str
     numbers: tuple[float, ...]
@@ -94,7 +94,7 @@ def map_header(
     commas_part
         Whether commas separate cells instead of being decimal marks.
     x_unit
-        Unit of a pitch or extent without one.
+        Unit of a pitch or extent that is stated without a unit.
 
     Examples
     --------
@@ -117,8 +117,8 @@ def map_header(
         entries = [
             e._replace(units=(x_unit,) * len(e.numbers)) if e in bare else e for e in entries
         ]
-    pitch = _alongaxes_of([e for e in entries if _is_pitch(e)], (1, 1))
-    extent = _alongaxes_of([e for e in entries if _is_extent(e)], shape)
+    pitch = _pitch_along_axes([e for e in entries if _is_pitch(e)], (1, 1))
+    extent = _pitch_along_axes([e for e in entries if _is_extent(e)], shape)
     dx, dy = (first or second for first, second in zip(pitch, extent, strict=True))
     doubt = ""
     if dx and dy is None and not any(_names_axis(e, "y") for e in entries if any(e.units)):
@@ -143,7 +143,7 @@ def map_header(
 
 
 def unit_of_range(header: MapHeader, heights: np.ndarray) -> float | None:
-    """Return the unit [m] in which the heights have the stated range.
+    """Return the unit [m] in which the range of the heights equals the stated one; else None.
 
     WSxM writes "Z Amplitude: 41.2 nm" above a matrix without a unit.
     """
@@ -169,7 +169,7 @@ def unit_of_resolution(header: MapHeader, heights: np.ndarray) -> float | None:
 
 
 def _split_entries(text: str, *, commas_part: bool) -> list[str]:
-    """Split a line on one axis into entries with names; any other line is unchanged.
+    """Split a header line about one axis into entries; any other line is returned unchanged.
 
     >>> _split_entries("Axe X;Points;256;Pas;3,2;um", commas_part=False)
     ['x Points: 256', 'x Pas: 3,2 um']
@@ -192,7 +192,7 @@ def _split_entries(text: str, *, commas_part: bool) -> list[str]:
 
 
 def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:
-    """Return name and numbers of a line; None without a number or with many."""
+    """Return name and numbers of a line; None if it has no number or more than two."""
     apart = _COMMA.sub(" ", text.translate(_BLANKED))
     found = numbers_in(apart.replace(",", " ") if commas_part else apart)
     if not found or len(found) > _MAX_NUMBERS:
@@ -287,10 +287,10 @@ def _is_factor(entry: _Entry) -> bool:
     return not entry.units[0] and not across and entry.means("any_factor")
 
 
-def _alongaxes_of(
+def _pitch_along_axes(
     entries: Iterable[_Entry], shape: tuple[int, int]
 ) -> tuple[float | None, float | None]:
-    """Return the pitch along x and y [m] that entries state; one of both axes counts last."""
+    """Return the pitch along x and y [m]; a length for both axes only if an axis has no other."""
     rows, columns = (max(number, 1) for number in shape)
     own: dict[str, set[float]] = {"x": set(), "y": set()}
     both: set[float] = set()

@@ -34,7 +34,7 @@ from tribolab.reading.text.first_bytes import File, peek, results_error
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
 
-# if scans of a surface differ, the coarsest resolution applies to all
+# if scans of a surface differ, the narrowest bandwidth applies to all
 _WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
 _JOINED = ("source", "source_sha256")
 _ONE_BY_ONE = Cure(notebook="read them with stack=False")
@@ -134,7 +134,7 @@ def _checked_scan(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
 
 
 def _remove_isolated(scan: xr.Dataset) -> xr.Dataset:
-    """Replace an isolated exact height by NaN, and note it."""
+    """Replace sentinels among the heights by NaN, and list them in an attribute."""
     height = np.array(scan.height.values, dtype=float)
     marks = take_isolated(height)
     if not marks:
@@ -150,7 +150,7 @@ def _remove_isolated(scan: xr.Dataset) -> xr.Dataset:
 
 
 def _recognised(path: Path) -> Dialect | None:
-    """Return the text dialect of a file; None for other formats."""
+    """Return the dialect that matches a text or TDMS file; None without one."""
     # imported late for a quick start
     from tribolab.reading.dialect.recognise import mismatch
 
@@ -244,7 +244,7 @@ def _scan_of(
 
 
 def _line_of(columns: Mapping[str, np.ndarray]) -> str | None:
-    """Return the axis of a single line of points, if the other coordinate is constant."""
+    """Return "x" or "y" for points on a line along that axis; None for any other points."""
     if "y" not in columns or not columns["height"].size > 1:
         return None
     still = [name for name in ("x", "y") if np.ptp(columns[name]) == 0]
@@ -256,8 +256,8 @@ def _stated_pitch(
 ) -> float:
     """Return the pitch [m] stated by the dialect or the file's header.
 
-    A length is divided by the number of points or of steps, as it is seldom stated whether it ends
-    at the last point; the difference is small.
+    Files seldom state whether a length ends at the last point or one step beyond it. The rounder of
+    the two pitches is used; the difference is small.
     """
     if dialect.pitch is not None:
         return positive(dialect.pitch, "m", "pitch")

@@ -69,7 +69,7 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
 
 
 class _Results:
-    """Parameters by name [m] or [1], other information, and parameters that were not computed."""
+    """Results of a tester: roughness parameters [m] or [1], attributes, and failed parameters."""
 
     def __init__(self, instrument: str) -> None:
         self.attrs: dict[str, str | float] = {"instrument": instrument}
@@ -77,7 +77,7 @@ class _Results:
         self.errors: list[str] = []
 
     def add(self, name: str, text: str, unit: str, where: str, condition: str = "") -> None:
-        """Add a parameter; a repeated one has its condition in its name."""
+        """Add a roughness parameter; `condition` is added to the name of one given twice."""
         name = _NAMES.get(name.lower(), name)
         failed = "*" in text or text.startswith("Err")
         value = np.nan if failed else _number(text, where)
@@ -135,7 +135,7 @@ def _read_named_values(file: File) -> _Results:
 
 
 def _read_surftest(file: File) -> _Results:
-    """Return the results of a RES file, by sections."""
+    """Return the results and settings in a RES file of a Surftest."""
     found, section = _Results("surftest_res"), ""
     lines = file.head.decode("latin-1").splitlines()
     names = [line.split(";")[0].strip() for line in lines]

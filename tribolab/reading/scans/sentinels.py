@@ -19,7 +19,7 @@ from tribolab.reading.scans.limits import (
 
 
 def take_isolated(height: np.ndarray) -> list[Marked]:
-    """Replace an exact height that is far outside all others by NaN.
+    """Replace sentinels, exact heights far outside all others, by NaN, and return them.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def take_isolated(height: np.ndarray) -> list[Marked]:
 
 
 def _min_distance(number: float, count: int) -> float:
-    """Return the distance in height ranges above which a number with this count is a sentinel."""
+    """Return the least distance of a sentinel from the other heights, in units of their range."""
     if count > 1:
         return MIN_DISTANCE_OF_MARK.value
     rounded = float(f"{number:.{int(MAX_DIGITS_OF_MARK.value)}g}")
@@ -76,7 +76,7 @@ def _min_distance(number: float, count: int) -> float:
 
 
 _SINGLE_PRECISION = 2e-7  # relative precision of a single-precision number
-_TWICE = 2
+_TWICE = 2  # fewest occurrences of a number with an unknown name
 _PARAMETER = re.compile(r"\b[RS]\w{1,2}\b")  # roughness parameters: Ra, Sq
 
 

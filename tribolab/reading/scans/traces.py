@@ -11,7 +11,7 @@ from tribolab.reading.scans.unit_words import WORD
 
 _MAX_TITLES = 5  # most titles named in a message
 _NUMBERS = re.compile(r"\d+(?:[.,]\d+)*")
-# titles of tables that were computed from another
+# words in titles of tables that were computed from another table
 _VERSIONS = re.compile(
     r"(?i)\b(?:raw|primary|filtered|unfiltered|roughness|waviness|levell?ed|form|residual|"
     r"roh\w*|gefiltert\w*|rauheit\w*|welligkeit\w*|prim[aä]r\w*|brut|filtr\w+|rugosit\w+|"

@@ -1,4 +1,4 @@
-"""Profiles and maps in named arrays: `z` (y, x) with `x` and `y` or a pitch, by CF's attributes."""
+"""Profiles and maps in named arrays, e.g. `z` (y, x) with arrays `x` and `y` or with a pitch."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _ALONG = {"x": frozenset(("x", "pos", "position", "positions", "distance")), "y"
 def read_scan_arrays(
     path: Path, x_unit: str | None = None, height_unit: str | None = None
 ) -> xr.Dataset | None:
-    """Read a profile, profiles side by side, or a map.
+    """Read a profile, several profiles, or a map from the named arrays in a file.
 
     Parameters
     ----------
@@ -50,8 +50,8 @@ def read_scan_arrays(
     Returns
     -------
     xarray.Dataset or None
-        ``height`` [m] (x), (scan, x) of several profiles, or (y, x); None if no array has a name of
-        heights, or the other arrays are those of a run.
+        ``height`` [m] (x), (scan, x) of several profiles, or (y, x); None if no array is named like
+        heights, or other arrays are named like the signals of a run.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def read_scan_arrays(
 
 
 def is_map_file(path: Path) -> bool:
-    """Whether a file contains a matrix of heights, by its name.
+    """Whether a file contains a two-dimensional array that is named like heights.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def _words(name: str) -> frozenset[str]:
 
 
 def _heights(path: Path, stored: list[NamedArray]) -> NamedArray | None:
-    """Return the only array with a name of heights; a single line only with its positions."""
+    """Return the array that is named like heights; a profile only if the file has its positions."""
     large = [a for a in stored if a.values.ndim in (1, 2) and a.values.size >= _MIN_POINTS]
     if any(_words(a.name) & _OF_RUNS for a in large if a.values.ndim == 1):
         return None
@@ -134,7 +134,7 @@ def _heights(path: Path, stored: list[NamedArray]) -> NamedArray | None:
 
 
 def _refuse_unknown_changes(path: Path, heights: NamedArray, stored: list[NamedArray]) -> None:
-    """Raise if a number or a mask may change the heights otherwise than by CF's attributes."""
+    """Raise if a factor, offset or mask in the file may apply to the heights (CF attributes do)."""
     for array in stored:
         name = re.split(r"[./]", array.name)[-1]
         applies = array.values.ndim == 0 or array.values.shape == heights.values.shape
@@ -166,7 +166,7 @@ def _oriented(
 
 
 def _decoded(heights: NamedArray, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """Return heights by CF's attributes: ``scale_factor``, ``add_offset``, ``_FillValue``."""
+    """Return heights after scaling by their CF attributes, without sentinels, and list these."""
     z, missing = values.astype(float), []
     for key in ("_FillValue", "missing_value"):
         number = heights.attrs.get(key)

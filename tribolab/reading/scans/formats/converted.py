@@ -26,7 +26,7 @@ def is_sur(head: bytes) -> bool:
 
 
 def plain_sur(path: Path) -> Path:
-    """Return the path of a file readable by SurfaceTopography: the file, or a copy.
+    """Return a Surf file that SurfaceTopography can read: the file, or an uncompressed copy.
 
     Raises
     ------
@@ -88,7 +88,7 @@ _DRAFT_MARK = 8  # bytes
 
 
 def is_sdf_draft(head: bytes) -> bool:
-    """Whether a file begins like the draft format.
+    """Whether a file begins like SDF of the draft standard.
 
     >>> is_sdf_draft(b"aBCR-1.0"), is_sdf_draft(b"aISO-1.0")
     (True, False)
@@ -97,7 +97,7 @@ def is_sdf_draft(head: bytes) -> bool:
 
 
 def as_standard(path: Path) -> Path:
-    """Return a copy of such a file with the signature of the standard."""
+    """Return a copy of an SDF file of the draft standard with the signature of the final one."""
     state = path.stat()
     return _restamped(path.resolve(), state.st_size, state.st_mtime_ns)
 

@@ -1,4 +1,4 @@
-"""Maps as text of any maker: a matrix of heights below lines that state its size.
+"""Text maps of any maker: a matrix of heights below lines that state its size.
 
 Keyence, Alicona, Bruker and Zygo microscopes export such maps, each with its own words.
 """
@@ -23,10 +23,10 @@ from tribolab.reading.scans.sentinels import take_stated
 from tribolab.units.conversion import conversion
 
 _HEAD = 1 << 20  # bytes in which a matrix must begin
-_CUT = 8  # bytes of an incomplete character at their end
+_CUT = 8  # most bytes of an incomplete character at the end of the head
 _HEAD_LINES = 200  # most lines above a matrix
 _MIN_COLUMNS = 8  # least columns of a matrix; fewer may be a table
-_MAX_OF_LINE = 24  # numbers of one profile in a line
+_MAX_OF_LINE = 24  # most numbers per line of a profile that continues on the next line
 _NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")  # a name of a word and a number
 _ROWS = 4  # rows of equal width needed to recognise a matrix
 _MARKS = frozenset(
@@ -40,7 +40,9 @@ _GRAMMARS = (
 
 
 class _Matrix(NamedTuple):
-    """Rows of numbers: lines above, delimiter, and whether the last line is shorter."""
+    """Matrix of numbers in a text; `above` are the lines before it.
+
+    `alone`: no other rows of numbers follow. `ragged`: a shorter row follows."""
 
     above: list[str]
     rows: list[list[float]]
@@ -54,7 +56,7 @@ class _Matrix(NamedTuple):
 def read_matrix(
     path: Path, x_unit: str | None = None, height_unit: str | None = None
 ) -> xr.Dataset | None:
-    """Read a map from text.
+    """Read a map from a text file with a matrix of heights.
 
     Parameters
     ----------
@@ -117,7 +119,7 @@ def read_matrix(
 
 
 def map_of(heights: np.ndarray, header: MapHeader, instrument: str) -> xr.Dataset:
-    """Return a map of heights as in the file (y, x), without sentinels, and with its header."""
+    """Return the map of heights as in the file (y, x), converted to m; sentinels become NaN."""
     assert header.dx and header.dy and header.height  # otherwise refused
     attrs = {"instrument": instrument}
     attrs |= {"doubtful": header.doubt} if header.doubt else {}
@@ -132,7 +134,7 @@ def map_of(heights: np.ndarray, header: MapHeader, instrument: str) -> xr.Datase
 
 
 def _remove_sentinels(heights: np.ndarray, header: MapHeader) -> str:
-    """Replace sentinels by NaN, and return which they were."""
+    """Replace sentinels by NaN, and return a text that lists them."""
     stated = take_stated(heights, header.stated)
     marks = [
         f"height: {Marked(number, count).words}, as the header states ('{shown(name, 30)}')"
@@ -143,7 +145,7 @@ def _remove_sentinels(heights: np.ndarray, header: MapHeader) -> str:
 
 
 def _texts_of(content: bytes) -> list[str]:
-    """Return the content in each encoding that fits, usually only the first."""
+    """Return the content decoded with each encoding that fits; usually only one does."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return [content.decode("utf-16", "replace")]
     if b"\0" in content[:8192]:
@@ -161,7 +163,7 @@ def _texts_of(content: bytes) -> list[str]:
 
 
 def _matrix(lines: list[str]) -> _Matrix | None:
-    """Return the first rows of numbers of equal width, unless column names are above them."""
+    """Return the first matrix of numbers in a text; None if column names are above it."""
     for start in range(min(len(lines), _HEAD_LINES)):
         first = lines[start : start + _ROWS]
         if len(first) < _ROWS or not first[0].strip():
@@ -179,7 +181,7 @@ def _matrix(lines: list[str]) -> _Matrix | None:
 
 
 def are_numbered(names: Sequence[str]) -> bool:
-    """Whether names are one word with numbers that rise by one, as of the points of a map.
+    """Whether names are the same word followed by consecutive numbers, like the points of a map.
 
     File: an area of an Olympus OLS5000, "DataLine", "POS = 0" to "POS = 1023"
     (jarredclloyd/GeochemistryTools.jl).
@@ -193,7 +195,7 @@ def are_numbered(names: Sequence[str]) -> bool:
 
 
 def _without_numbers(matrix: _Matrix) -> _Matrix | None:
-    """Return the matrix without its first column, which numbers the rows; None if it does not."""
+    """Return the matrix without its first column; None unless that column numbers the rows."""
     if any(row[0] != matrix.rows[0][0] + place for place, row in enumerate(matrix.rows)):
         return None
     above = matrix.above[: matrix.above.index(_last_line(matrix))]
@@ -286,7 +288,7 @@ def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
         what = f"a matrix of {rows} x {columns} numbers that does not say {' or '.join(lacking)}"
         write = "write it above the numbers, as 'Pixel size: 0.5 um' and 'Height unit: um'"
         along = not (header.dx and header.dy)
-        if along and not header.without_unit:  # names that state only the unit
+        if along and not header.without_unit:  # a unit in the file name would not help
             raise MissingUnitError(what, where=path, cure=write)
         cure = unit_remedy(path, along=along, up=header.height is None)
         raise MissingUnitError(what, where=path, cure=cures.either(write, cure))

@@ -36,7 +36,7 @@ def is_of_arrays(path: Path, head: bytes) -> bool:
 
 
 def read_arrays(path: Path) -> list[NamedArray]:
-    """Read all arrays of numbers of a file.
+    """Read all arrays of numbers in a file, with their attributes.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def _of_hdf5(path: Path) -> list[NamedArray]:
 
 
 def _take(stored: list[NamedArray], name: str, values: np.ndarray, attrs: Json) -> None:
-    """Store an array of numbers with its attributes, or the numbers of a group like its members."""
+    """Append an array of numbers to `stored`; of a group, append numeric attributes as arrays."""
     if values.dtype.kind in "fiub" and values.size:
         own = np.squeeze(values) if values.ndim > 2 or values.size == 1 else values
         stored.append(NamedArray(name, own, attrs))

@@ -23,7 +23,7 @@ class NamedUnits(NamedTuple):
 
 
 def units_in_name(path: Path) -> NamedUnits:
-    """Return the units in a file name, if each is unambiguous.
+    """Return the units of positions and heights in a file name; None if missing or ambiguous.
 
     >>> units_in_name(Path("plate3_xy-mm_z-um.asc")), units_in_name(Path("scan_x_mm.txt"))
     (NamedUnits(x='mm', height='um'), NamedUnits(x='mm', height=None))

@@ -15,12 +15,12 @@ _MARK = b"\\Samps/line:"
 
 
 def is_nanoscope(head: bytes) -> bool:
-    """Whether a file begins like such text, with its header."""
+    """Whether a file begins like a text export of NanoScope with its header."""
     return _MARK in head and b"\0" not in head
 
 
 def read_nanoscope(path: Path) -> xr.Dataset:
-    """Read an image.
+    """Read the heights of a NanoScope text export as a map.
 
     Returns
     -------

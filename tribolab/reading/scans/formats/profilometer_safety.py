@@ -14,10 +14,10 @@ _MEGABYTE = 1 << 20
 _BINARY = (b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 _MAX_LINES, _MAX_ROW = 2_000_000, 1 << 20  # limits of text without a dialect
 _HEADER_LINES = 200  # header lines that SurfaceTopography's column reader can skip
-_MAX_LINE = 4096  # bytes of a line of words, for patterns that take quadratic time
+_MAX_LINE = 4096  # most bytes of a line with words, on which patterns take quadratic time
 _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
-# SurfaceTopography's text formats in its order; "xyz" takes any first line as a row, so it is used
-# only for tables of numbers up to their end
+# SurfaceTopography's text formats in its order; "xyz" reads any line as a row, so it is tried only
+# if the file ends with a table of numbers
 _TEXT = ("sdf", "xyz", "asc")
 
 
@@ -29,7 +29,7 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
     path
         The file.
     sure, possible
-        SurfaceTopography's formats that the first bytes prove, and do not exclude.
+        Formats of SurfaceTopography that the first bytes prove, and that they do not exclude.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def _text_formats(path: Path) -> list[str]:
 
 
 def _refuse_endless_lines(path: Path, content: bytes) -> None:
-    """Raise for text with lines too long for the memory."""
+    """Raise if text has too many or too long lines for the memory."""
     count = content.count(b"\n") + content.count(b"\r")  # before creating a list of lines
     if count > _MAX_LINES:
         raise ReadError(

@@ -22,11 +22,16 @@ from tribolab.reading.scans.grid import even
 from tribolab.reading.text.first_bytes import peek
 from tribolab.units.conversion import conversion, to_si
 
-_OF_PROGRAM = (LookupError, TypeError, AttributeError, AssertionError)  # no information on the file
+_OF_PROGRAM = (
+    LookupError,
+    TypeError,
+    AttributeError,
+    AssertionError,
+)  # these say nothing about the file
 
 
 class MissingUnitError(ReadError):
-    """Raised if a scan lacks only information that can be stated."""
+    """Raised if a scan lacks only a unit or a size, which the user can state."""
 
 
 @isolated("xarray", "SurfaceTopography", "SurfaceTopography.IO")
@@ -100,7 +105,7 @@ def read_foreign(
     if len(points) == 2:
         # SurfaceTopography's first index is x
         steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]
-        if 1 in points and max(points) > 1:  # a profile in a format of maps
+        if 1 in points and max(points) > 1:  # a profile stored as a map
             pitch, heights = steps[int(points[0] == 1)], heights.ravel()
             return xr.Dataset(
                 {"height": ("x", heights)}, {"x": pitch * np.arange(heights.size)}, attrs
@@ -132,7 +137,7 @@ def _read_errors(path: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[Any]:
-    """Open a file with the first suitable one of some formats."""
+    """Open a file as the first of several formats that can read it."""
     reader = None
     for name in formats:
         try:
@@ -160,7 +165,7 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
 def _topography(
     path: Path, reader: Any, x_unit: str | None, height_unit: str | None
 ) -> tuple[Any, Any, float | None]:
-    """Return channel, topography, and factor of heights to m if the channel has no unit."""
+    """Return channel, topography and, if the channel has no unit, the unit of heights [m]."""
     channel = reader.default_channel
     given: Arguments = {}
     if channel.physical_sizes is None:

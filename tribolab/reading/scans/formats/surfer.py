@@ -1,4 +1,4 @@
-"""Surfer grids: text (DSAA) and single precision (DSBB), without units."""
+"""Maps as grids of the program Surfer: text (DSAA) or single precision (DSBB), without units."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def is_surfer(head: bytes) -> bool:
 def read_surfer(
     path: Path, x_unit: str | None = None, height_unit: str | None = None
 ) -> xr.Dataset:
-    """Read a grid.
+    """Read a Surfer grid as a map.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Scans without a dialect, read by the format of their first bytes."""
+"""Reading of scans without a dialect; the first bytes of a file show its format."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HEAD = 1 << 14  # bytes sufficient to recognise a format
 
 
 def is_own_text(path: Path) -> bool:
-    """Whether a file is text of a format read by tribolab, whose errors are specific."""
+    """Whether a file is text in a format with a reader in tribolab, which gives specific errors."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     named = is_surfer(head) or is_zygo_xyz(head) or is_nanoscope(head)
@@ -34,7 +34,7 @@ def is_own_text(path: Path) -> bool:
 
 
 def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
-    """Read a scan in a format of tribolab, or else with SurfaceTopography.
+    """Read a scan without a dialect, with a reader of tribolab or else with SurfaceTopography.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
     if b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return _read_text(path, x_unit, height_unit)
     if head.startswith(ZIP) and is_workbook(path):
-        sheets_of(path)  # names the package that is missing
+        sheets_of(path)  # raises an error that names the missing package, if any
     return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)
 
 
@@ -123,7 +123,7 @@ def _read_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Da
         try:
             return read_foreign(path, x_unit, height_unit)
         except MissingUnitError as error:
-            if x_unit is None:  # the error is that of our own reader
+            if x_unit is None:  # report the error of our own reader
                 raise lacking from error
             raise
         except ReadError as error:

@@ -1,7 +1,7 @@
 """Surface data of ISO 25178-72: x3p archives and the bare XML of softgauges.
 
-They are not read by SurfaceTopography (1.27), which requires ``main.xml`` at the archive's top,
-an areal feature with even axes, one revision, and heights in a binary member.
+SurfaceTopography (1.27) does not read all of them: it requires ``main.xml`` at the top of the
+archive, an areal feature with even axes, one revision, and heights in a binary member.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _FIELDS = {
 
 
 class _Axis(NamedTuple):
-    """Axis with even steps or a number for each point, and their conversion to metres."""
+    """Axis with even steps or a stored position of each point, and the conversion to metres."""
 
     name: str
     even: bool
@@ -66,7 +66,7 @@ def main_of(path: Path) -> str | None:
 
 
 def is_iso_xml(head: bytes) -> bool:
-    """Whether a file begins like the bare XML."""
+    """Whether a file begins like the bare XML of a softgauge."""
     return head.lstrip(b"\xef\xbb\xbf \r\n\t").startswith(b"<") and _ROOT in head[:4096]
 
 
@@ -79,7 +79,7 @@ def read_x3p(path: Path, main: str) -> xr.Dataset:
     path
         The file.
     main
-        From `main_of`.
+        Name of the main XML member, from `main_of`.
 
     Returns
     -------
@@ -114,7 +114,7 @@ def read_x3p(path: Path, main: str) -> xr.Dataset:
 
 
 def read_iso_xml(path: Path) -> xr.Dataset:
-    """Read the bare XML with a list of heights.
+    """Read a profile or map from bare XML that lists its heights.
 
     Raises
     ------
@@ -275,7 +275,7 @@ def _listed(
 
 
 def _valid(mask: bytes, number: int) -> np.ndarray:
-    """Return a mask of valid points from bits, lowest first, or from bytes as some makers write."""
+    """Return the mask of valid points, stored as bits (lowest first) or, by some makers, bytes."""
     values = np.frombuffer(mask, np.uint8)
     if values.size >= number > 8:
         return values[:number] != 0

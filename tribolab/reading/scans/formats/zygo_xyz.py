@@ -15,17 +15,17 @@ from tribolab.units.conversion import conversion
 
 _BEGIN = b"Zygo XYZ Data File"
 _HEIGHT = 1e-6  # m per unit in the file
-_SIZES, _LENGTHS = 3, 7  # lines, from 0
-_RESOLUTION = 6  # place of the camera's resolution [m] in its line
+_SIZES, _LENGTHS = 3, 7  # numbers of header lines, from 0
+_RESOLUTION = 6  # index of the camera's resolution [m] in its line
 
 
 def is_zygo_xyz(head: bytes) -> bool:
-    """Whether a file begins like such a map."""
+    """Whether a file begins like a text map of MetroPro."""
     return head.startswith(_BEGIN)
 
 
 def read_zygo_xyz(path: Path, x_unit: str | None = None) -> xr.Dataset:
-    """Read a map.
+    """Read a text map of MetroPro.
 
     Parameters
     ----------
