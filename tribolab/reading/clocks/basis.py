@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
-from tribolab.reading.clocks.motion import Motion
+from tribolab.reading.clocks.motion import Motion, integral
 
 Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
 
@@ -34,7 +34,7 @@ class Basis:
         self.time, self.averaged, self._motion = time, motion.averaged, motion
         way = motion.way
         change = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
-        self._path = _path(time, motion.velocity)
+        self._path = integral(time, motion.velocity)
         strokes = np.abs(np.diff(self._path[change]))
         self.longest = float(strokes.max())
         self.shortest = float(strokes[strokes > 0.01 * self.longest].min())
@@ -102,7 +102,7 @@ class Basis:
         stops = stops[stops > 0]
         if not len(stops):
             return
-        moved = _path(self.time, np.abs(velocity))
+        moved = integral(self.time, np.abs(velocity))
         ends = np.append(stops[1:], len(way))
         rested, slid = np.zeros(len(way)), np.full(len(way), np.inf)
         last_position = np.zeros(len(way))
@@ -135,11 +135,6 @@ class Basis:
             before = slice(min(int(np.searchsorted(self.time, begin)), k), k)
             out[before] += turn * (1.0 + (self.time[before] - self.time[k]) * speed / length)
         return out
-
-
-def _path(time: Array, velocity: Array) -> Array:
-    steps = 0.5 * np.diff(time) * (velocity[1:] + velocity[:-1])
-    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64] | slice:

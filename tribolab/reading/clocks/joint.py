@@ -271,9 +271,9 @@ class _Fit:
         squares, amplitudes, inertia = self.squares()
         best = int(np.argmin(squares))
         residual = self.residual(self.shifts[best], amplitudes[best])
-        alike = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
-        hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
-        freedom = max(len(residual) - amplitudes.shape[1] - DRIFT_FUNCTIONS, 1) / hanging
+        correlation = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
+        correlation_length = max(1.0, (1.0 + correlation) / max(1.0 - correlation, 1e-3))
+        freedom = max(len(residual) - amplitudes.shape[1] - DRIFT_FUNCTIONS, 1) / correlation_length
         squares = np.maximum(squares, 1e-12 * self.whole)
         return (
             -0.5 * freedom * np.log(squares),

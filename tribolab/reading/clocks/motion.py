@@ -46,7 +46,7 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
     >>> np.unique(way[:1000]).tolist(), np.unique(way[1000:]).tolist()
     ([0], [1])
     """
-    path = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (velocity[1:] + velocity[:-1]))])
+    path = integral(time, velocity)
     velocity = _fill_between_counts(time, velocity, path)
     half, smooth = 0, velocity
     noise = _noise(velocity, 1)
@@ -67,6 +67,11 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
         return Motion(np.where(plain != 0, velocity, 0.0), plain, 0.0)
     interval = float(np.percentile(np.diff(time), 5))
     return Motion(np.where(way != 0, smooth, 0.0), way, 2 * half * interval)
+
+
+def integral(time: Array, values: Array) -> Array:
+    """Return the integral of a signal over time, by trapezoids, from the first sample on."""
+    return np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (values[1:] + values[:-1]))])
 
 
 def _fill_between_counts(time: Array, velocity: Array, path: Array) -> Array:

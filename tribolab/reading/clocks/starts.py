@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
+from tribolab.reading.clocks.motion import integral
 
 _MAX_STARTS = 64
 _COMPARED_SAMPLES = 200  # samples used after a start, and at most as many before it
@@ -69,10 +70,10 @@ class Logs:
     ):
         self.force_time, self.force, self.motion_time = force_time, force, motion_time
         self.way = way  # -1 backward, 0 at rest, 1 forward
-        self.impulse = _integral(force_time, force)
+        self.impulse = integral(force_time, force)
         self.speed = np.abs(velocity)
         self.change = np.diff(self.speed) / np.diff(motion_time)
-        self.path = _integral(motion_time, self.speed)
+        self.path = integral(motion_time, self.speed)
         self._curves: dict[_Start, _Curve] = {}
 
     def slid(self, start: _Start, since: Array) -> Array:
@@ -118,10 +119,6 @@ class Logs:
         np.expm1(after, out=after)
         np.negative(after, out=after)
         return out
-
-
-def _integral(time: Array, values: Array) -> Array:
-    return np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (values[1:] + values[:-1]))])
 
 
 def changes(way: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -259,9 +256,9 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
     squares = np.maximum((residual**2).sum(axis=1), 1e-30)
     relative = squares / variance
     best = residual[np.argmin(relative)]
-    alike = float(best[1:] @ best[:-1]) / max(float(best @ best), 1e-30)
-    hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
-    freedom = max(residual.shape[1] - parameters - 1, 1) / hanging
+    correlation = float(best[1:] @ best[:-1]) / max(float(best @ best), 1e-30)
+    correlation_length = max(1.0, (1.0 + correlation) / max(1.0 - correlation, 1e-3))
+    freedom = max(residual.shape[1] - parameters - 1, 1) / correlation_length
     return -0.5 * freedom * np.log(relative / relative.min())
 
 

@@ -26,11 +26,6 @@ _OWN_FILTERS = frozenset((1, 2, 3, 4, 5, 6, 32000))
 def check_self_contained(path: Path) -> None:
     """Raise if a file refers to external data; every child process checks this before reading.
 
-    Parameters
-    ----------
-    path
-        The file.
-
     Raises
     ------
     ReadError

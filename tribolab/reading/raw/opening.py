@@ -224,9 +224,7 @@ def report_damage(path: Path, what: str) -> Iterator[None]:
     """
     try:
         yield
-    except (TribolabError, ImportError, KeyboardInterrupt, SystemExit):
-        raise
-    except MemoryError:
+    except (TribolabError, ImportError, KeyboardInterrupt, SystemExit, MemoryError):
         raise
     except BaseException as error:
         words = " ".join(f"{type(error).__name__}: {error}".split())[:200]

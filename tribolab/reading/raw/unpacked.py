@@ -230,9 +230,6 @@ def _refuse_larger(unpacked: int, size: int, path: Path) -> None:
         )
 
 
-_BLOCK = 1 << 20
-
-
 # exceptions of zipfile for damaged, encrypted or unsupported archives
 ZIP_DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, RuntimeError, ValueError),
@@ -263,5 +260,5 @@ def refuse_bomb(path: Path) -> None:
 
 
 def _blocks(file: IO[bytes]) -> Iterator[bytes]:
-    while block := file.read(_BLOCK):
+    while block := file.read(_CHUNK):
         yield block

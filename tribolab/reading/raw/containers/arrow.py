@@ -19,11 +19,6 @@ _OF_LIBRARIES = (b"pandas", b"ARROW:schema", b"PANDAS_ATTRS")
 def read_arrow(path: Path) -> RawFile:
     """Read a Parquet or a Feather file.
 
-    Parameters
-    ----------
-    path
-        The file.
-
     Raises
     ------
     ReadError

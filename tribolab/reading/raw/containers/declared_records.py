@@ -73,23 +73,12 @@ class _Records(NamedTuple):
 
 
 def declares_records(head: bytes) -> bool:
-    """Whether a file begins with a text header that declares the binary numbers after it.
-
-    Parameters
-    ----------
-    head
-        First bytes of the file.
-    """
+    """Whether a file begins with a text header that declares the binary numbers after it."""
     return _declared(head) is not None
 
 
 def read_declared_records(path: Path) -> RawFile:
     """Read a file of binary numbers that are declared by a text header.
-
-    Parameters
-    ----------
-    path
-        The file.
 
     Raises
     ------

@@ -35,11 +35,6 @@ _MAX_ELEMENTS = 500  # elements of a structure array
 def read_hdf5(path: Path) -> RawFile:
     """Read the columns of an HDF5 file, with attributes and single values as settings.
 
-    Parameters
-    ----------
-    path
-        The file.
-
     Raises
     ------
     ReadError

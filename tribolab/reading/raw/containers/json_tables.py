@@ -37,23 +37,12 @@ class _Table(NamedTuple):
 
 
 def has_tables(text: str) -> bool:
-    """Whether a text is JSON with at least two columns of numbers.
-
-    Parameters
-    ----------
-    text
-        Text of the whole file.
-    """
+    """Whether a text is JSON with at least two columns of numbers."""
     return bool(_tables(text)[0])
 
 
 def read_json(path: Path) -> RawFile:
     r"""Read the settings of a JSON file, and its tables of one kind.
-
-    Parameters
-    ----------
-    path
-        The file.
 
     Raises
     ------

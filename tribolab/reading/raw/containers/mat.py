@@ -129,11 +129,6 @@ def _variables(name: str, value: Any, depth: int) -> list[Variable]:
 def read_mat(path: Path) -> RawFile:
     """Read the variables of a MAT file as columns, and structures as tables.
 
-    Parameters
-    ----------
-    path
-        The file.
-
     Raises
     ------
     ReadError

@@ -20,11 +20,6 @@ _NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys
 def read_npz(path: Path) -> RawFile:
     """Read the named arrays of a NumPy archive as columns.
 
-    Parameters
-    ----------
-    path
-        The file.
-
     Raises
     ------
     ReadError

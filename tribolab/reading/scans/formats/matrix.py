@@ -42,7 +42,8 @@ _GRAMMARS = (
 class _Matrix(NamedTuple):
     """Matrix of numbers in a text; `above` are the lines before it.
 
-    `alone`: no other rows of numbers follow. `ragged`: a shorter row follows."""
+    `alone`: no other rows of numbers follow. `ragged`: a shorter row follows.
+    """
 
     above: list[str]
     rows: list[list[float]]
