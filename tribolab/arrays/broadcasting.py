@@ -108,7 +108,7 @@ class OfLists(Protocol[P, R_co]):
 
 
 def of_lists(*names: str, paired: str = "") -> Callable[[Callable[P, R]], OfLists[P, R]]:
-    """Return a function that also accepts lists for some arguments, and then returns a list.
+    """Return a decorator that lets arguments of a function be lists; it then returns a list.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def _call_with_entry(
     placed: int,
     number: int,
 ) -> R:
-    """Return the result of a function for one entry, with this `number`, of each list."""
+    """Return the result of a function for the entries at index `number` of all lists."""
     mine = {key: own[key][number] if key in own else value for key, value in given.items()}
     places = [mine.pop(place) for place in range(placed)]
     return function(*places, **mine)
@@ -173,7 +173,7 @@ def _name(function: Callable[..., Any], key: int | str) -> str:
 
 
 def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a function whose arguments may have further dimensions, which the result then has.
+    """Return a decorator that lets arguments have further dimensions, which the result then has.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ _Part = TypeVar("_Part")
 def pieces(
     start: int, stop: int, length: int | None = None, *, block: int = 1
 ) -> Iterator[tuple[int, int]]:
-    """Yield the first sample of each piece of a range, and the one after its last.
+    """Yield the first sample and the end (exclusive) of each piece of a range.
 
     The memory of the pieces is released after every few of them, and after the last.
 
@@ -51,7 +51,7 @@ def pieces(
 
 
 def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Yield pieces of whole blocks: the first block of each, and the one after its last.
+    """Yield the first block and the end (exclusive) of each piece; pieces have whole blocks.
 
     Parameters
     ----------

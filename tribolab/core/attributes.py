@@ -30,7 +30,7 @@ class Attributes:
 
 @dataclass(frozen=True)
 class RunAttributes(Attributes):
-    """Attributes of a run: how it was read, its clocks and checks; tables are by quantity."""
+    """Attributes of a run: how it was read, its clocks and its checks."""
 
     instrument: str = ""
     recorded_at: str = ""

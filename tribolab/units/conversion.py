@@ -107,7 +107,7 @@ _PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # matches whole runs of
 
 
 def pint_spelling(unit: str) -> str:
-    """Return a unit in pint's spelling, from a typeset one or from that of netCDF."""
+    """Return a unit in pint's spelling, from typeset spelling or that of netCDF."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     unit = _RAISED.sub(r"^\1", _TIMES.sub("", unit))
     unit = _PRODUCT.sub("*", unit.translate(_SIGNS))

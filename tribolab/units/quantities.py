@@ -29,7 +29,7 @@ class Quantity(NamedTuple):
 
 
 def dictionary(rows: Iterable[tuple[Any, ...]]) -> dict[str, Quantity]:
-    """Return quantities by name; an error if two have the same name.
+    """Return a dictionary of quantities by name; raise if a name occurs twice.
 
     Raises
     ------
@@ -74,7 +74,7 @@ _DOF = "_dof"  # degrees of freedom, dimensionless whatever the unit of the quan
 
 
 def quantity(name: str) -> Quantity:
-    """Return the quantity of a name; ``..._std``, ``..._sem``, ``..._u`` etc. follow their base.
+    """Return the quantity with a name, which may end in ``_std``, ``_sem``, ``_u`` etc.
 
     Raises
     ------

@@ -35,7 +35,7 @@ class ShiftEstimate(NamedTuple):
 
 
 def starts_agree(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
-    """Whether the shifts from all starts and from fast strokes agree; `stroke` in s."""
+    """Whether the shifts from all starts and from fast strokes (lasting `stroke` s) agree."""
     sharp = (
         max(starts.uncertainty, onsets.uncertainty) < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
     )

@@ -97,7 +97,7 @@ class Basis:
         yield np.gradient(velocity, self.time)
 
     def _relaxed(self, velocity: Array, way: Ways, last: Ways) -> Iterator[Array]:
-        """Yield the loss of force at rest, with its recovery over a distance."""
+        """Yield functions for the relaxation of the force at rest and its recovery by sliding."""
         stops = np.flatnonzero((way == 0) & (np.roll(way, 1) != 0))
         stops = stops[stops > 0]
         if not len(stops):

@@ -41,7 +41,7 @@ class Coarse(NamedTuple):
 
 
 def motion_classes(velocity: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return velocity classes (rests by the motion before them) and directions (-1, 0, 1)."""
+    """Return the velocity class (of rests, by the motion before) and direction of each sample."""
     classes = velocity_classes(velocity)
     way = np.sign(classes - _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value)
     return np.where(
@@ -203,7 +203,7 @@ class Classes:
         )
 
     def _parts(self, shifts: Array) -> tuple[Array, Array, Array]:
-        """Return changes [samples] (shift, change); number and sum by class (shift, class)."""
+        """Return changes as sample numbers (shift, change); count and sum (shift, class)."""
         at = np.interp(self._moments + shifts[:, None], self._time, self._edges[:-1] + 0.5)
         total = self._by_class(np.diff(np.interp(at, self._edges, self._sum)))
         return at, self._by_class(np.diff(at)), total
@@ -220,7 +220,7 @@ class Classes:
         return inside - np.repeat(means[self._classes], np.diff(places))
 
     def ratio(self, shift: float) -> float:
-        """Return the explained share of the variance."""
+        """Return the share of the variance of the force that classes explain at a shift."""
         return float(self.ratios(np.array([shift]))[0])
 
     def ratios(self, shifts: Array) -> Array:

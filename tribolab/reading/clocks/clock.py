@@ -39,7 +39,7 @@ class Mended(NamedTuple):
 
 
 def set_time(content: Content, dialect: Dialect) -> None:
-    """Set the time of pieces from intervals, a rate, position and speed, or row numbers."""
+    """Set the time of each table from intervals, a rate, position and speed, or row numbers."""
     if dialect.time.source == "column":
         return
     if dialect.time.source == "period":
@@ -119,7 +119,7 @@ def _even(start: float, rows: int, step: float) -> np.ndarray:
 
 
 def join_clocks(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray | str]:
-    """Shift times so that parts and pieces follow each other, if the dialect requests it.
+    """Shift times so that tables, and parts within them, follow each other, if so requested.
 
     Returns
     -------

@@ -129,7 +129,7 @@ def _usual_and_spread(steps: np.ndarray) -> tuple[float, float]:
     if not rising.size:
         return 1.0, 0.0
     usual = float(np.median(rising, overwrite_input=True))
-    for first, last in pieces(0, rising.size):  # the median has changed their order
+    for first, last in pieces(0, rising.size):  # the median reorders them, which does not matter
         rising[first:last] = np.abs(rising[first:last] - usual)
     return usual, float(np.median(rising, overwrite_input=True))
 
@@ -150,7 +150,7 @@ class _Search:
         self.starts: list[Start] = []
 
     def run(self) -> None:
-        """Classify every fall."""
+        """Classify every backward jump of the clock."""
         falls = np.flatnonzero(self.steps < 0) + 1
         size = -self.steps[falls - 1]
         if np.count_nonzero(size <= self.small) > limits.MAX_BACKWARD_STEPS.value:
@@ -209,7 +209,7 @@ class _Search:
         return jump >= max(0.5 * fall, 1.5 * self.usual) and abs(lag) <= slack * self.usual
 
     def _is_start(self, row: int) -> bool:
-        """Whether a fall exceeds jitter: a large one, or one back to the start of the part."""
+        """Whether a fall is a restart: too large for jitter, or back to the start of the part."""
         begin = float(self.time[self.first])
         back = self.time[row] <= begin + 0.5 * self.usual and self.top - begin >= 1.5 * self.usual
         return bool((back and self._fall(row) > self.scatter) or self._fall(row) > self.small)

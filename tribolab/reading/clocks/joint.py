@@ -29,8 +29,8 @@ from tribolab.reading.clocks.basis import SLACK_LENGTHS, Basis
 from tribolab.reading.clocks.force_samples import DRIFT_FUNCTIONS, ForceSamples, force_samples
 
 _ROUNDING = 1e-14  # relative rounding error of a difference of products
-_CANCELLATION = 1e-6  # relative residual below which it is summed over samples instead
-_POWER_RANGE = 2.0, 8.0  # exponent that weights models by their unexplained variance
+_CANCELLATION = 1e-6  # relative sum of squares below which it is computed sample by sample
+_POWER_RANGE = 2.0, 8.0  # least and largest exponent of the weights by unexplained variance
 _POWER_PER_RESIDUAL = 0.01  # exponent per independent residual
 # prior probability that the force leads; all slack values share the rest equally
 _PRIOR_FORCE_LEADS = 0.5
@@ -107,7 +107,7 @@ def shift_from_motion(
 
 
 def sampling(force_time: Array, basis: Basis, shift: float) -> float:
-    """Return the sampling interval [s] after starts of motion, both logs added in quadrature."""
+    """Return the sampling intervals [s] of both logs after starts, added in quadrature."""
     own, other = _interval(force_time, basis, shift), _interval(basis.time, basis, 0.0)
     return float(np.hypot(own, other))
 
@@ -267,7 +267,7 @@ class _Fit:
         return left
 
     def profile(self) -> tuple[Array, float, float, float]:
-        """Return log likelihoods (shift); of the best fit residual, inertia and freedom."""
+        """Return log likelihoods (shift), then residual, inertia and freedom of the best fit."""
         squares, amplitudes, inertia = self.squares()
         best = int(np.argmin(squares))
         residual = self.residual(self.shifts[best], amplitudes[best])

@@ -129,7 +129,7 @@ def _noise(velocity: Array, apart: int) -> float:
 
 
 def _directions(velocity: Array, noise: float) -> NDArray[np.int64]:
-    """Return the direction (-1, 1) of intervals that rise well above the noise; 0 elsewhere."""
+    """Return directions (-1, 0, 1); an interval moves if its peak is well above the noise."""
     speed = np.abs(velocity)
     least = 10.0**-limits.DECADES_TO_REST.value * float(speed.max())
     above = speed > max(noise, least)

@@ -37,7 +37,7 @@ class Sharpened(NamedTuple):
 
 
 class Onset(NamedTuple):
-    """Start of one stroke: force samples, and distance [m] slid by the times of the motion log."""
+    """Start of one stroke: force against its clock, distance [m] against the motion clock."""
 
     time: Array
     force: Array

@@ -98,7 +98,7 @@ class _UndeterminedError(Exception):
 
 
 class _Search:
-    """Search for the shift: each method narrows the one before and adds its result to `ways`."""
+    """Search for the shift: each method refines the last result and adds its own to `ways`."""
 
     def __init__(self, force_time: Array, force: Array, motion_time: Array, velocity: Array):
         good = np.abs(force) < _MAX_POSSIBLE_VALUE
@@ -149,7 +149,7 @@ class _Search:
     def search_by_starts(self) -> None:
         """Refine the shift by the starts of motion: of all speeds, and of fast strokes."""
         shift, uncertainty = self.first
-        # friction remains at rest, so the shift may be late by up to a rest
+        # friction persists at rest, so the shift may be late by up to one rest
         durations = np.diff(self.motion_time[changes(self.way)])
         self.span = max(8.0 * self.coarse.half, 1.25 * float(median(durations)))
         ratio = self.fit.ratio(shift)
@@ -222,9 +222,7 @@ class _Search:
         """Fit the force with all effects of motion, close to the shift found from the starts."""
         estimate = self.estimate
         durations = np.diff(self.motion_time[changes(self.way)])
-        self.stroke = float(
-            median(durations[durations > 0.1 * durations.max()])
-        )  # of strokes and rests
+        self.stroke = float(median(durations[durations > 0.1 * durations.max()]))  # also of rests
         least = 5.0 * estimate.uncertainty
         inside = min(0.4 * self.stroke, 0.8 * float(durations[[0, -1]].min()))
         near = min(self.span, max(least, inside))

@@ -26,8 +26,8 @@ from tribolab.reading.clocks.motion import integral
 
 _MAX_STARTS = 64
 _COMPARED_SAMPLES = 200  # samples used after a start, and at most as many before it
-_THINNED_SAMPLES = 160  # samples kept of more
-_FIRST_SAMPLES = 0.5  # samples: the distance within them is the shortest length
+_THINNED_SAMPLES = 160  # longer windows are thinned to this many samples
+_FIRST_SAMPLES = 0.5  # the shortest length is the distance covered in this many samples
 _CURVE_TERMS = 8  # number of exponentials in a start's curve
 
 
@@ -107,7 +107,7 @@ class Logs:
         return way
 
     def shapes(self, start: _Start, since: Array) -> Array:
-        """Return the functions of time that compose the force (..., function, time)."""
+        """Return the functions of time of which the force is composed (..., function, time)."""
         lengths = self._curve(start).lengths
         out = np.empty((*since.shape[:-1], 3 + _CURVE_TERMS, since.shape[-1]))
         out[..., 0, :] = 1.0
@@ -195,7 +195,7 @@ def shift_from_starts(
         offsets = half * np.linspace(-1.0, 1.0, 41)
         for k, start in enumerate(starts):
             moments, error = _shift_of_start(logs, start, centre[k] + offsets)
-            # an uninformative start has an error of 0.58 half; near its ends the grid cuts a peak
+            # without information, error = 0.58 half; near the ends of the grid a peak is cut off
             if error < 0.4 * half and abs(moments - centre[k]) < 0.7 * half:
                 seen[:, k] = moments, error
         found = np.isfinite(seen[1])
@@ -211,7 +211,7 @@ def shift_from_starts(
 
 
 def _best_common_shift(logs: Logs, starts: list[_Start], shifts: Array) -> float:
-    """Return the grid shift at which all starts fit best, in windows that move with it."""
+    """Return the shift on a grid at which the force around all starts fits best."""
     total = np.zeros(len(shifts))
     half = np.sinh(np.linspace(0.0, 4.0, 49)) / np.sinh(4.0)  # finer near the start
     for start in starts:

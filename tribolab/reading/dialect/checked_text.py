@@ -1,4 +1,4 @@
-"""Validated texts of a dialect, and the base classes of its rules."""
+"""Validation of texts in a dialect, and base classes of its rules."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.units.conversion import conversion
 
-AGAIN = "~"  # separates a quantity and the number of a further column for it
+AGAIN = "~"  # separates a quantity from the number of its second or later column
 
 
 class ReadColumn(NamedTuple):
@@ -40,9 +40,7 @@ def resolve(
     width: int,
     dialect: Dialect,
 ) -> tuple[list[ReadColumn], list[str]]:
-    """Find the columns of a dialect in a table.
-
-    Return the columns to read, and the labels of those that are not used.
+    """Return the columns of a table that a dialect reads, and the labels of all others.
 
     Raises
     ------
@@ -88,10 +86,9 @@ def scales_of(signals: Sequence[ReadColumn]) -> dict[str, tuple[float, float]]:
 
 
 def first_filled(columns: Mapping[str, Sequence[np.ndarray]]) -> dict[str, str]:
-    """Choose the first filled one of several columns for a quantity.
+    """Return the key of the first filled column for each quantity that has several columns.
 
-    Return its key by quantity, for quantities with several columns. A column is filled if it has a
-    number other than zero; if none is filled, the first is chosen.
+    A column is filled if it has a number other than zero; if none is, the first is chosen.
     """
     keys: dict[str, list[str]] = {}
     for key in columns:

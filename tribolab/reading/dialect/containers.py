@@ -42,7 +42,7 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
 
 
 def table_of(file: RawFile, dialect: Dialect) -> RawTable:
-    """Return the whole file as one table; of TDMS only the groups of the dialect's columns."""
+    """Return all tables of a file as one; of TDMS only the groups that the dialect names."""
     if dialect.format != "tdms":
         return file.as_one_table()
     groups = {column.group for column in dialect.column}
@@ -53,7 +53,7 @@ def table_of(file: RawFile, dialect: Dialect) -> RawTable:
 
 
 def name_and_unit(column: RawColumn) -> tuple[str, str | None]:
-    """Return a column's name without its unit, and the unit, in brackets or stated by the file."""
+    """Return a column's name, and its unit: in brackets after the name, or stated by the file."""
     name, unit = split_name(column.label)
     return name, unit or column.unit
 
@@ -75,7 +75,7 @@ class PythonReader(Dialect):
 
 
 def python_reader(name: str) -> PythonReader:
-    """Return the dialect of a reader, without its columns, which are found in each file.
+    """Return a dialect for the files of a Python reader; columns are added for each file.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def python_reader(name: str) -> PythonReader:
 
 
 def recognised_by(head: bytes) -> list[Dialect]:
-    """Return the installed readers that recognise the first bytes of a file, or else may."""
+    """Return the installed readers that answer "yes" to the first bytes of a file, else "maybe"."""
     said = answers(head)
     sure = [name for name, answer in said.items() if answer == "yes"]
     return [python_reader(name) for name in sure or said]

@@ -192,7 +192,7 @@ def _explain(problem: Any) -> str:
 
 
 def _model_at(loc: tuple[str | int, ...]) -> list[str]:
-    """Return the names of the keys allowed at a place of the dialect."""
+    """Return the keys that are allowed at a location in a dialect."""
     # imported late for a quick start
     from tribolab.reading.dialect import model as dialect_model
 

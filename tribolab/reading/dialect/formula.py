@@ -54,7 +54,7 @@ def in_base_units(value: Array | float, si_unit: str) -> Operand:
 
 @functools.lru_cache(maxsize=128)
 def parse_formula(text: str) -> ast.expr:
-    """Parse a formula.
+    """Return the syntax tree of a formula, after checking its grammar and units.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def names_in(formula: ast.expr) -> set[str]:
 
 
 def evaluate(text: str, known: Mapping[str, Operand], si_unit: str) -> Array | float:
-    """Evaluate a formula.
+    """Return the value of a formula in an SI unit.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def _value(tree: ast.expr, known: Mapping[str, Operand], text: str) -> Operand:
         case ast.UnaryOp(operand=inner):
             operand = _value(inner, known, text)
             return operand._replace(value=-operand.value)
-    assert isinstance(tree, ast.BinOp)  # as checked
+    assert isinstance(tree, ast.BinOp)  # `_check` allows nothing else
     left, right = (_value(side, known, text) for side in (tree.left, tree.right))
     if isinstance(tree.op, ast.Add | ast.Sub):
         if left.dimension != right.dimension:

@@ -51,7 +51,7 @@ class Derived(Strict):
 
 
 class Dialect(Strict):
-    """Raw files of one instrument."""
+    """Description of the raw files of one instrument."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     title: str = Field(description="name of the instrument, for people")

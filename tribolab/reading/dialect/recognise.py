@@ -94,9 +94,9 @@ def _text(head: bytes, encoding: str) -> str:
 
 
 def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
-    """Return why a table without header does not match in number or relation of its columns."""
+    """Return why a table without header lacks the stated number or relation of columns."""
     columns, delimiter = dialect.recognise.columns, dialect.text.delimiter
-    first = _FIRST_LINE.match(text)  # sufficient for most files
+    first = _FIRST_LINE.match(text)  # this line is enough to exclude most files
     rows = []
     if first and len(split_row(first[1], delimiter)) == columns:
         lines = text.splitlines()[:-1][:_ROWS]

@@ -87,7 +87,7 @@ def _lines_of(head: bytes) -> tuple[_Lines, str]:
 
 
 def _decoded(head: bytes) -> tuple[str, str]:
-    """Return a file's first text, and its encoding."""
+    """Return the text at the start of a file, and its encoding."""
     if head.startswith(_WIDE):
         return head.decode("utf-16", errors="ignore"), "utf-8"  # the encoding after conversion
     try:

@@ -106,7 +106,7 @@ def sampling_interval(text: str, name: str) -> float:
     >>> sampling_interval("2 kHz", "rate"), sampling_interval("0.5 ms", "rate")
     (0.0005, 0.0005)
     """
-    if "Hz" not in text:  # a failing conversion is slow
+    if "Hz" not in text:  # avoids a conversion that fails slowly
         with contextlib.suppress(UnitError):
             return positive(text, "s", name)
     return 1.0 / positive(text, "Hz", name)

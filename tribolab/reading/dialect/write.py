@@ -15,7 +15,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 class Remarks(NamedTuple):
-    """Comments of a dialect, by place.
+    """Comments for a dialect file, by the table or key to which they belong.
 
     A place is a table (``time``), one of several tables (``column.2``, from 0) or a key
     (``time.source``); the place of keys above all tables is ``""``.

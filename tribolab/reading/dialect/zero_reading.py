@@ -34,7 +34,7 @@ class ZeroRule(NamedTuple):
 
 
 def parse_zero(text: str) -> ZeroRule:
-    """Parse the source of a zero.
+    """Return the samples, interval or file in which a zero is read, from a text.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def take_zeros(
     where: str,
     units: Mapping[str, str] | None = None,
 ) -> Json:
-    """Subtract the zeros of signals.
+    """Subtract the zero of each signal that has a rule, and return attributes on the zeros.
 
     Parameters
     ----------
@@ -143,9 +143,8 @@ def zeros_of_derived(
             continue
         signal, unit = signals[used[0]], quantity(name).unit
         large = np.abs(signal) > 0.5 * np.nanmax(np.abs(signal), initial=0.0)
-        factor = float(
-            np.median(columns[name][large] / signal[large])
-        )  # the force is proportional to the signal
+        # the force is proportional to the signal
+        factor = float(np.median(columns[name][large] / signal[large]))
         for key in ("zero", "zero_sem", "zero_uncertainty"):
             if (value := attrs.pop(f"{used[0]}_{key}", None)) is not None:
                 times = factor if key == "zero" else abs(factor)
@@ -196,7 +195,7 @@ def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: J
 
 
 def _samples_without_friction(friction: np.ndarray, rows: int) -> int:
-    """Return how many more samples follow before friction starts, five samples in a row."""
+    """Return how many samples follow the first `rows` until five in a row show friction."""
     rubs = friction[rows:] > _RUBS * np.nanpercentile(friction, 90)
     held = np.convolve(rubs, np.ones(5), "valid") >= 5
     return int(np.argmax(held)) if held.any() else 0

@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 def lock_of(room: Path) -> Path:
-    """Return the lock of a staging folder."""
+    """Return the lock file of a staging folder."""
     return room.with_name(f"{room.name}.lock")
 
 

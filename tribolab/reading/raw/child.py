@@ -1,4 +1,4 @@
-"""Process that reads containers: a server without threads, and a copy of it for each file."""
+"""Server process for reading container files, which forks a child for each file."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from tribolab.reading.raw.server import Ended, Job
 from tribolab.reading.raw.unpacked import ZIP, refuse_bomb
 
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE = 0, 3, 4, 5
-_TEXT_PER_NUMBER = 4  # text cells are longer than numbers
-_PIPE = 1 << 15  # bytes of module names
+_TEXT_PER_NUMBER = 4  # limit of a result file over that of its arrays: text is longer than numbers
+_PIPE = 1 << 15  # most bytes of module names that a child sends
 _POLL = 0.01  # s between checks of a child, if the system cannot wait for one
 
 

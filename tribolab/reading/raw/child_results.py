@@ -1,4 +1,4 @@
-"""Results of a child process: numbers, texts, arrays and errors, but no functions."""
+"""Transfer of results from a child process: numbers, texts, arrays and errors, but no code."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _ROOMS = ("builtins", "numpy", "pandas", "xarray", "datetime", "collections", "p
 
 
 class Failure(NamedTuple):
-    """Error for transfer between processes, as packages change the pickling of exceptions."""
+    """Class, arguments and state of an error, for transfer between processes."""
 
     kind: type[Exception]
     arguments: tuple[Any, ...]
@@ -41,7 +41,7 @@ class Failure(NamedTuple):
 
 
 def packed_error(error: object) -> Any:
-    """Return errors, also nested ones, as `Failure`; anything else unchanged."""
+    """Return an error as `Failure`, including errors nested in it; anything else is unchanged."""
     if not isinstance(error, Exception):
         return error
     state = {key: packed_error(value) for key, value in vars(error).items() if key[0] != "_"}

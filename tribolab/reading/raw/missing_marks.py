@@ -32,7 +32,7 @@ _FULL = np.concatenate([_FULL / 10.0**power for power in range(1, 7)])
 _ROUNDED = 1e-5  # relative rounding of a sentinel with few decimals
 _SINGLE = 2e-7  # relative rounding in single precision
 _TWICE = 2  # fewest occurrences of a sentinel
-_OUTSIDE = 5.0  # ratio to the largest other number
+_OUTSIDE = 5.0  # least ratio of a sentinel to the largest other number
 _KINDS = 4  # most sentinels per column
 
 
@@ -121,7 +121,7 @@ def _sentinel_of(
 def _largest_other(
     parts: Sequence[np.ndarray], ends: Sequence[float], scale: float, offset: float
 ) -> float:
-    """Return the largest other magnitude in the unit of the file; minus infinity without any."""
+    """Return the largest magnitude of all other numbers, in the file's unit; -inf without any."""
     largest = -np.inf
     for part in parts:
         for first, last in pieces(0, part.size):

@@ -20,7 +20,7 @@ class Place(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """Setting of a file besides its columns: "radius: 15 mm", an attribute, a row of cells.
+    """Setting stated in a file outside its columns, e.g. "radius: 15 mm" or an attribute.
 
     `key` is empty for text alone, such as a title.
     """
@@ -42,7 +42,7 @@ class Clock(NamedTuple):
     interval: float
 
     def times(self, rows: int) -> np.ndarray:
-        """Return the times [s] of so many values (row)."""
+        """Return the sampling times [s] of the first `rows` values (row)."""
         return self.start + self.interval * np.arange(rows)
 
 

@@ -55,7 +55,7 @@ def installed_readers() -> dict[str, EntryPoint]:
 
 
 def source_of(name: str) -> Path:
-    """Return the file of a reader.
+    """Return the Python file of a reader.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def _read(name: str, stamp: int, path: Path, size: int, changed: int) -> RawFile
 
 
 def _of_dataset(path: Path, data: xr.Dataset) -> RawFile:
-    """Return the variables over time of a run, or heights and positions of a scan."""
+    """Convert a reader's dataset: variables along time, or heights and positions of a scan."""
     heights = data["height"] if "height" in data and "time" not in data.dims else None
     if heights is not None:
         names = [str(name) for name in (*heights.dims, "height") if name in data.variables]

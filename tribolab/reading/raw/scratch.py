@@ -15,7 +15,7 @@ from tribolab.core.errors import OutputError, brief
 
 
 def scratch_place() -> str:
-    """Return the scratch folder; remnants of killed processes are removed once."""
+    """Return the scratch folder, after removing the remnants of killed processes."""
     folder = os.environ.get("TMPDIR") or ("/var/tmp" if Path("/var/tmp").is_dir() else "")
     _sweep(folder or tempfile.gettempdir())
     return folder or tempfile.gettempdir()
@@ -36,7 +36,7 @@ def scratch_folder() -> Path:
 
 
 def scratch_copy(path: Path, content: bytes) -> Path:
-    """Write content to a scratch file of the same name."""
+    """Return a scratch file with the given content and the name of another file."""
     copy = scratch_folder() / path.name
     with scratch_errors():
         copy.write_bytes(content)

@@ -1,4 +1,4 @@
-"""Server process whose copies read files, and its jobs."""
+"""Start and use of the server process whose children read files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _ENVIRONMENT = {
 
 
 class Job(NamedTuple):
-    """Task of a child, and its limits [s, bytes]."""
+    """Function to call in a child process, and limits on its time [s] and memory [bytes]."""
 
     module: str
     name: str

@@ -1,4 +1,4 @@
-"""Checks that sources are regular files, unchanged while they are read."""
+"""Checks that raw files are regular files and do not change while they are read."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def check_regular(path: Path) -> None:
 
 
 class Identity(NamedTuple):
-    """State of a file at rest: size, times [ns] and inode."""
+    """Size, times [ns] and inode of a file, at least one of which changes if the file does."""
 
     size: int
     written: int
@@ -57,7 +57,7 @@ def identity_of(path: Path) -> Identity | None:
 
 
 def _identity_and_age(path: Path) -> tuple[Identity, float] | None:
-    """Return the identity of a regular file, and its age [s]; None of any other."""
+    """Return the identity of a regular file, and its age [s]; None for anything else."""
     with contextlib.suppress(OSError, ValueError):
         now = path.stat()
         if stat.S_ISREG(now.st_mode):

@@ -24,7 +24,7 @@ _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are also a
 _CHUNK = 1 << 20
 _MAX_DEFLATED = 1032  # highest compression ratio of zlib (zlib.net/zlib_tech.html)
 _STATED = 4  # bytes at the end of a gzip file that state its unpacked size, modulo 4 GiB
-_MAX_README = 1 << 16  # bytes
+_MAX_README = 1 << 16  # bytes of the longest readme that is used
 _MAX_LETTER = 3  # bytes of an incomplete character at the end of a block
 # files in an archive besides data: readmes, pictures, system files
 _README = re.compile(

@@ -23,7 +23,7 @@ class _RootReachedError(Exception):
 
 
 def parsed(path: Path, text: bytes) -> ElementTree.Element:
-    """Parse XML, without namespaces, which differ between manufacturers.
+    """Return the root element of XML, with tags freed from namespaces, which differ by maker.
 
     An internal DTD with plain-text entities is allowed, as in ISO softgauges.
 
@@ -45,7 +45,7 @@ def parsed(path: Path, text: bytes) -> ElementTree.Element:
 
 
 def _check_declarations(path: Path, text: bytes) -> None:
-    """Raise for entities and default attributes other than short text, before expansion."""
+    """Raise if XML declares entities or default attributes other than short text."""
     letters = 0
 
     def refuse(what: str) -> Never:

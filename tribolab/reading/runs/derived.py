@@ -22,12 +22,10 @@ from tribolab.reading.dialect.model import Derived, Dialect
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.units.quantities import QUANTITIES, quantity
 
-_LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: light load, and no load
+_LIGHT, _UNLOADED = 0.4, 0.1  # of the usual normal stress: limits of light and of zero load
 _MIN_SAMPLES_OF_ZERO = 20  # samples needed for a zero
-_MOVES, _ONE_SPEED = (
-    0.5,
-    0.1,
-)  # shares of the usual speed: moving above it; largest deviation of one speed
+# shares of the usual speed: motion above it, and largest deviation of one speed
+_MOVES, _ONE_SPEED = 0.5, 0.1
 _NO_CONTACT = 0.02  # share of the greatest normal stress below which there is no contact
 
 

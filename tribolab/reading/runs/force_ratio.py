@@ -7,10 +7,10 @@ import numpy as np
 from tribolab.arrays.medians import median
 from tribolab.core.untyped import Json
 
-LARGEST = 10.0  # soft rubber on glass reaches 4, gels and gecko feet at light loads more
-SMALLEST = 2e-4  # superlubric contacts reach 1e-3 and slightly less
-_LOADED = 0.5  # share of the largest load
-_MIN_LOADED_ROWS = 20  # rows under load needed
+LARGEST = 10.0  # largest plausible ratio; soft rubber on glass reaches 4, gels at light loads more
+SMALLEST = 2e-4  # smallest plausible ratio; superlubric contacts reach somewhat less than 1e-3
+_LOADED = 0.5  # share of the largest load above which a row is used
+_MIN_LOADED_ROWS = 20  # fewest rows under load for a judgement
 
 
 def doubt_about_coefficient(recorded: np.ndarray) -> str:
@@ -68,7 +68,7 @@ def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
 
 _APART = 0.02  # largest relative difference; both are computed from readings of three digits
 _PRESSED = 0.1  # share of the largest load above which the contact is loaded
-_MIN_ROWS = 5  # rows needed
+_MIN_ROWS = 5  # fewest rows for a comparison
 _FORCES = ("friction_force", "normal_force")
 
 

@@ -148,7 +148,7 @@ def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:
 
 
 def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]:
-    """Return the arrays of the whole run, with ``step`` and ``cycle`` if it has several."""
+    """Return the arrays of the whole run; ``step`` and ``cycle`` number its tables and files."""
     pieces = [piece for content in contents for piece in content.pieces]
     lengths = [len(piece.columns["time"]) for piece in pieces]
     names = dict.fromkeys(name for piece in pieces for name in piece.columns)

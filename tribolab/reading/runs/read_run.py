@@ -200,9 +200,8 @@ def _companion(path: Path, dialect: Dialect) -> LogDialects:
     if other is None or dialect.pair is None or not other.exists():
         return []
     check_regular(other)
-    if (
-        other.is_symlink() and not path.is_symlink()
-    ):  # git-annex and DataLad replace every file of a run by a link
+    # git-annex and DataLad replace every file of a run by a link
+    if other.is_symlink() and not path.is_symlink():
         raise ReadError(
             f"the companion log {shown(other.name)} is a link to {other.resolve()}; tribolab reads "
             "no data from elsewhere unless you name them",

@@ -280,7 +280,7 @@ _SIGNALS = ("friction_force", "friction_coefficient", "shear_stress")
 
 
 def _stated(text: str | None, value: str | None, unit: str, attrs: Json) -> float | None:
-    """Return an amount stated in the dialect, or the named value outside the table."""
+    """Return a radius, stroke or frequency stated in the dialect, or by a value of the file."""
     if text is not None:
         return to_si(text, unit, "speed")
     number = attrs.get(f"{value}_{unit}") if value else None

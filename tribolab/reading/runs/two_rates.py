@@ -80,12 +80,8 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
         keep[:] = False
         keep[seldom[lead]] = True
         attrs["rows_without_friction"] = int(time.size - seldom[lead].size)
-    for (
-        name,
-        rows,
-    ) in (
-        seldom.items()
-    ):  # leave out rows before the first and after the last value of a slower signal
+    # leave out rows before the first and after the last value of a slower signal
+    for name, rows in seldom.items():
         longest = int(np.diff(rows).max())
         if name != lead and rows[0] <= longest:
             keep[: rows[0]] = False

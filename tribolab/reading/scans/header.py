@@ -27,13 +27,13 @@ from tribolab.units.spellings import unit_of_length
 
 _MAX_COUNT = 1e9  # most steps of a height resolution
 _MAX_LINE = 300  # most characters of a line
-_MAX_NUMBERS = 2  # most in an entry; more are a date, a time, or a row of results
+_MAX_NUMBERS = 2  # most numbers in an entry; more are a date, a time, or a row of results
 _BLANKED = str.maketrans(";[](){}", "       ")  # marks that may stand between a number and its unit
 _COMMA = re.compile(r"(?<!\d),|,(?!\d)")
 
 
 class MapHeader(NamedTuple):
-    """Statements above a map: pitch along x and y [m], unit of heights [m], rows and columns.
+    """Contents of a header: pitch along x and y [m], unit of heights [m], rows and columns.
 
     Missing or contradictory values are None. `along` [m] is the unit of positions. `stated` are
     names and numbers without units. `gauge_step` [m] is the height of one count, if heights are
@@ -55,7 +55,7 @@ class MapHeader(NamedTuple):
 
 
 class _Entry(NamedTuple):
-    """Name in a header with its numbers, their units of length ("" without), and if per point."""
+    """Numbers after a name in a header, with units of length, and whether they are per point."""
 
     key: str
     numbers: tuple[float, ...]
@@ -222,7 +222,7 @@ def _number(text: str, mark: str) -> float:
 
 
 def _names(key: str) -> Iterator[str]:
-    """Yield a normalised name without its unit: as a whole, and without axes."""
+    """Yield the normalised forms of a name without its unit: with and without its axis."""
     name = WORD.sub(lambda word: "" if _is_bracketed(key, word) else word[0], key)
     yield normalise_label(name)
     if words := [word for word in words_of(name) if word not in AXES]:
@@ -313,7 +313,7 @@ def _pitch_along_axes(
 
 
 def _counts(entries: Iterable[_Entry]) -> tuple[int | None, int | None]:
-    """Return the numbers of rows and columns."""
+    """Return the stated numbers of rows and columns; None if missing or contradictory."""
     rows: set[float] = set()
     columns: set[float] = set()
     for entry in entries:

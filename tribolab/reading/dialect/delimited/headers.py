@@ -96,7 +96,7 @@ def parted_as_numbers(
     if fits or any(column.position is None for column in dialect.column):
         return names, units
     joined: list[str] = []
-    marked = len(names) > width and not any(map(str.isalnum, names[0]))  # "# t [s] x [mm]"
+    marked = len(names) > width and not any(map(str.isalnum, names[0]))  # comment: "# t [s] x [mm]"
     for name in names[marked:]:
         if joined and name[:1] in "([":
             joined[-1] += f" {name}"
@@ -108,7 +108,7 @@ def parted_as_numbers(
 
 
 def counts_its_rows(rows: Sequence[str], delimiter: str) -> bool:
-    """Whether two rows begin with a row number, which is not a column of the header.
+    """Whether two rows begin with consecutive row numbers, which the header does not name.
 
     Unless blanks separate the cells, row numbers must be in quotes, as in R's `write.table`;
     without quotes they may be a time in seconds.
@@ -157,7 +157,7 @@ def is_wide(dialect: Dialect) -> bool:
 
 
 def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
-    """Return a pattern for lines of raw bytes: ``$`` also matches before CR LF."""
+    """Compile a pattern for lines of bytes, in which ``$`` also matches before CR LF."""
     # after "\s*", another repetition of blanks would take quadratic time
     if dialect.text.delimiter == "whitespace" and not _CLASS.search(pattern):
         pattern = re.sub(" +", r"[\\t ]+", pattern)  # blanks were replaced by tabs, see `mended`
@@ -167,7 +167,7 @@ def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
 
 
 def _as_bytes(pattern: str, encoding: str) -> bytes:
-    """Return a pattern for bytes, in which a letter's second byte may be a special character.
+    """Return a pattern encoded as bytes; letters of several bytes are escaped and grouped.
 
     >>> re.search(_as_bytes("^[ ]*\u30fc+$", "cp932"), "  \u30fc".encode("cp932")) is not None
     True

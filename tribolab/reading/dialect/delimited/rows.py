@@ -46,7 +46,7 @@ class RowParser:
         }
 
     def parse(self, view: memoryview, place: int, last: bool) -> list[list[np.ndarray]]:
-        """Return the numbers of one block: pieces by signal, in the file's units."""
+        """Return the numbers in a block of lines, in the file's units: arrays for each signal."""
         types = {
             name: pa.string() if name in self._dates else pa.float64() for name in self._wanted
         }

@@ -28,7 +28,7 @@ _BLANK = re.compile(rb"(?:[ \t\r\n]*\n)?")
 
 
 class TextTable(NamedTuple):
-    """One table of a text file: offsets of its first byte and of the byte after its last."""
+    """Table in a text file, with names, units, and the offsets [bytes] of its start and end."""
 
     names: tuple[str, ...]
     units: tuple[str | None, ...]
@@ -140,7 +140,7 @@ def _decode(content: bytes, file: File, dialect: Dialect) -> str:
         ) from error
 
 
-_MAX_FOOT = 1 << 16  # bytes
+_MAX_FOOT = 1 << 16  # most bytes that are read of the text below a table
 # line that begins with a number and contains no words, times of day or dates
 _NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTILINE)
 

@@ -1,4 +1,4 @@
-"""Binary records: declared by a text header before them, or described by a dialect."""
+"""Reading of binary records that are described by a text header or by a dialect."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.unit_texts import is_unit_of_key, without_unit
 
-_MAX_HEADER = 1 << 16  # bytes of a header
+_MAX_HEADER = 1 << 16  # most bytes of a header
 _SETTING = re.compile(r"^[\s#;*%/!]*(?P<key>[^\W\d][\w .\-/]{0,40}?)\s*[=:]\s*(?P<value>\S.*?)\s*$")
 _OFFSET = re.compile(r"(?:header|head|data)[ _-]?(?:bytes|size|length|offset|start)|offset")
 _TYPE = re.compile(r"(?:data|sample|number|value|num)?[ _-]?(?:type|format)|dtype|datatype")
@@ -52,7 +52,7 @@ _WRAPS_AT = re.compile(
 
 
 class _Channel(NamedTuple):
-    """Channel: name, unit, value = raw * scale + bias; of an encoder counts per turn and wrap."""
+    """Name, unit, scale and bias of a channel; of an encoder also counts per turn and wrap."""
 
     name: str
     unit: str
@@ -63,7 +63,7 @@ class _Channel(NamedTuple):
 
 
 class _Records(NamedTuple):
-    """Contents of a header: settings; offset [bytes], type and channels of binary numbers."""
+    """Header of binary records: settings, and offset [bytes], type and channels of numbers."""
 
     settings: list[Setting]
     offset: int
@@ -173,7 +173,7 @@ def _channels(settings: dict[str, str], text: str) -> list[_Channel]:
 
 
 def _channel(declared: str, inside: str) -> _Channel:
-    """Parse the declaration of a channel; `inside` is the sign of an offset that is scaled too.
+    """Parse the declaration of a channel; `inside` is the sign in (raw - offset) * scale.
 
     >>> _channel("FT unit=N scale=0.1 bias=2", "")[:4], _channel("FN, N", "")[:2]
     (('FT', 'N', 0.1, 2.0), ('FN', 'N'))
@@ -201,7 +201,7 @@ def _channel(declared: str, inside: str) -> _Channel:
 
 
 def _split_name(text: str) -> tuple[str, str]:
-    """Separate a name from the unit in its brackets."""
+    """Return a name and the unit in brackets after it."""
     found = re.fullmatch(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]", text)
     return (found["name"], found["unit"].strip()) if found else (text, "")
 
@@ -214,7 +214,7 @@ def _number(text: str, otherwise: float) -> float:
 
 
 def _settings_in(text: str) -> list[Setting]:
-    """Return the lines of a header except channels as settings, with units after numbers."""
+    """Return the lines of a header as settings, except those that declare channels."""
     found: list[Setting] = []
     for line in text.replace("\r", "").split("\n"):
         setting = _SETTING.match(line)

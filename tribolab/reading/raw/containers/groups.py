@@ -1,4 +1,4 @@
-"""Columns and settings of containers, collected by group for the tables of a file."""
+"""Collection of the columns and settings of a container file by group, one table each."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Groups:
         self._settings.setdefault(group, []).extend(settings)
 
     def as_file(self, path: Path, container: str, *, sort: bool = False) -> RawFile:
-        """Return the groups as tables; settings of groups without a table are those of the file.
+        """Return a file with a table for each group; settings of other groups belong to the file.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ def settings_of(key: str, value: object, path: str = "") -> list[Setting]:
 
 
 def _with_unit(key: str) -> str:
-    """Return a key that ends with a unit ratio with the unit in brackets."""
+    """Return a key with its unit ratio in brackets: gain_N_per_V becomes "gain [N/V]"."""
     key = " ".join(key.split())
     per = _PER.fullmatch(key)
     return f"{per['key']} [{per['unit']}/{per['other']}]" if per else key

@@ -28,7 +28,7 @@ _OF_LIBRARY = ("#refs#", "#subsystem#")
 _NAMES = ("columns", "column_names", "names", "labels", "channels", "fields")
 _UNITS = (*keys_of("unit"), "column_units", "Units", "Unit")
 _MEANINGS = ("long_name", "description", "standard_name", "label", "title")
-_MAX_ELEMENTS = 500  # elements of a structure array
+_MAX_ELEMENTS = 500  # most elements of a structure array that are read
 
 
 @isolated("h5py")
@@ -149,7 +149,7 @@ def _matlab_text(item: Any) -> str:
 
 
 def _first(item: Any, keys: Sequence[str]) -> object:
-    """Return the first existing one of some attributes: a text, or a list of texts."""
+    """Return the text, or list of texts, in the first attribute that exists; else None."""
     for key in keys:
         if key in item.attrs:
             value = plain(item.attrs[key])
@@ -176,7 +176,7 @@ def _of_field(item: Any, place: int) -> str | None:
 
 
 def _labels_of_matrix(item: Any) -> list[str]:
-    """Return the names of a matrix's columns from its attributes."""
+    """Return the column names of a matrix that its attributes state; else an empty list."""
     if len(item.shape) != 2 or item.dtype.names:
         return []
     for key in _NAMES:

@@ -20,11 +20,11 @@ from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.unit_texts import is_unit_of_key, without_unit
 
 _MIN_NUMBERS = 3  # smallest length of a column
-_ROWS = 5  # records inspected
+_ROWS = 5  # fewest records or rows of a table
 _DEEPEST = 12  # deepest nesting searched
-_MAX_PARTS = 3_000_000  # lists and objects; each takes a hundred bytes
+_MAX_PARTS = 3_000_000  # most lists and objects in a document; each takes a hundred bytes
 _MAX_SETTINGS = 60
-_MAX_SETTING = 200  # characters of a setting
+_MAX_SETTING = 200  # most characters of a setting
 _SET = re.compile(r"set[_ -]?(?:point)?s?|target|soll\w*|commanded|programmed", re.IGNORECASE)
 
 
@@ -42,7 +42,7 @@ def has_tables(text: str) -> bool:
 
 
 def read_json(path: Path) -> RawFile:
-    r"""Read the settings of a JSON file, and its tables of one kind.
+    r"""Read the tables and settings of a JSON file; of several kinds of tables, the largest.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
 
 
 def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int) -> list[Setting]:
-    """Append the tables of a part to `tables`; return the settings that belong to none of them."""
+    """Append the tables in a part of a document to `tables`; return settings outside tables."""
     if depth > _DEEPEST:
         return []
     columns, units = _columns(part)
@@ -126,7 +126,7 @@ def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int)
 
 
 def _columns(part: object) -> tuple[dict[str, list[float]], dict[str, str]]:
-    """Return the columns of a part and their units; empty if it is not a table."""
+    """Return the columns and units in a part of a document; empty if it is not a table."""
     if isinstance(part, dict):
         named = part.get("columns", part.get("fields", part.get("header")))
         rows = next((part[k] for k in ("data", "rows", "values") if k in part), None)
@@ -239,7 +239,7 @@ def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tupl
 
 
 def _with_units(settings: list[Setting], units: dict[str, str]) -> list[Setting]:
-    """Add units to settings of the same name, and remove settings that are units."""
+    """Return settings with the unit stated for their name, but without those that are units."""
     found = []
     for setting in settings:
         unit = units.get(setting.key.split(" ")[-1], "")

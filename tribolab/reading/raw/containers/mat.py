@@ -17,9 +17,9 @@ from tribolab.reading.raw.model import RawColumn, RawFile
 from tribolab.reading.raw.opening import isolated, largest_unpacked, report_damage
 
 _DEEPEST = 8  # deepest nesting of structures
-_MAX_ELEMENTS = 500  # elements of a structure array
-_MAX_TEXT = 2000  # characters of a text
-_MAX_CELLS = 200  # texts in cells
+_MAX_ELEMENTS = 500  # most elements of a structure array that are read
+_MAX_TEXT = 2000  # most characters of a text
+_MAX_CELLS = 200  # most texts of a cell array
 _HEADER, _COMPRESSED = 128, 15  # bytes before the variables, and type code of a compressed one
 _STATED = 64  # compressed bytes that contain type and length
 
@@ -96,7 +96,7 @@ def _refuse_bomb(path: Path) -> None:
 
 
 def _variables(name: str, value: Any, depth: int) -> list[Variable]:
-    """Return a variable, or the fields of a structure."""
+    """Return a value as a variable, or a structure as one variable per field."""
     # imported late: SciPy loads slowly
     from scipy.io.matlab import MatlabFunction, MatlabOpaque
 

@@ -12,7 +12,7 @@ from tribolab.reading.raw.model import RawFile
 # module and function of each reader; their imports are slow
 _READERS = {
     "hdf5": ("hdf5", "read_hdf5"),
-    "netcdf": ("hdf5", "read_hdf5"),  # both begin alike
+    "netcdf": ("hdf5", "read_hdf5"),  # netCDF-4 files begin like HDF5
     "mat": ("mat", "read_mat"),
     "tdms": ("tdms", "read_tdms"),
     "npz": ("npz", "read_npz"),

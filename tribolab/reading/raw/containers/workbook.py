@@ -1,9 +1,8 @@
-"""Workbooks: sheets, columns of one sheet, and settings next to its table."""
+"""Reading of workbooks: cells of all sheets, or the table and settings of one sheet."""
 
 from __future__ import annotations
 
 import datetime as dt
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -19,9 +18,7 @@ _MAX_CELLS = 50_000_000  # most cells of a sheet
 _MAX_ROWS, _MAX_WIDE = 100, 12  # largest block of settings: rows and columns
 _HEAD = 4096  # bytes sufficient to recognise a workbook in XML
 _SUMMARY = 30  # most rows of a summary below a table
-_MAX_SETTING = 200  # characters of a setting
-_ABOVE = 40  # rows of a sheet searched for names
-_UNIT_BEHIND = re.compile(r"\s*[\[(][^\[\]()]*[\])]$")
+_MAX_SETTING = 200  # most characters of a setting
 Cells = Sequence[Sequence[object]]
 
 
@@ -156,7 +153,7 @@ def is_small(page: object) -> bool:
 
 
 def _settings_above(rows: Cells) -> list[Setting]:
-    """Return rows of cells that contain words as settings."""
+    """Return each row that contains words as a setting."""
     settings = []
     for line, row in enumerate(rows, start=1):
         cells = [" ".join(str(cell).split()) for cell in row[:_MAX_WIDE] if cell not in ("", None)]

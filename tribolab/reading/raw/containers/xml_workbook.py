@@ -86,7 +86,7 @@ class XmlWorkbook:
         return rows
 
     def _fill(self, cells: list[Any], element: Element, empty: object) -> None:
-        """Add the empty cells or rows before one with an explicit number, from 1."""
+        """Append the empty cells or rows that an explicit index, from 1, skips."""
         index = _attribute(element, "Index")
         gap = int(index) - 1 - len(cells) if index.isdecimal() else 0
         self._cells += max(gap, 0) + 1
@@ -96,7 +96,7 @@ class XmlWorkbook:
 
 
 def _attribute(element: Element, name: str) -> str:
-    """Return an attribute of any namespace."""
+    """Return an XML attribute by its name, in any namespace."""
     return next((v for key, v in element.attrib.items() if key.rpartition("}")[2] == name), "")
 
 

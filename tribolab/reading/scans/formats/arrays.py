@@ -20,7 +20,7 @@ from tribolab.reading.text.cells import split_name
 from tribolab.units.conversion import conversion
 from tribolab.units.spellings import unit_of_length
 
-_MIN_POINTS = 8  # least heights of a profile, or along one side of a map
+_MIN_POINTS = 8  # fewest heights of a profile, or along one side of a map
 _HEIGHTS = plain_words("height_array")
 _UNITS = frozenset(keys_of("unit"))
 _OF_RUNS = frozenset(
@@ -109,7 +109,7 @@ def is_map_file(path: Path) -> bool:
 
 
 def _words(name: str) -> frozenset[str]:
-    """Return the normalised words of an array's own name.
+    """Return the normalised words in an array's name, without its groups.
 
     >>> sorted(_words("scan/heightMap"))
     ['height', 'heightmap', 'map']
@@ -134,7 +134,7 @@ def _heights(path: Path, stored: list[NamedArray]) -> NamedArray | None:
 
 
 def _refuse_unknown_changes(path: Path, heights: NamedArray, stored: list[NamedArray]) -> None:
-    """Raise if a factor, offset or mask in the file may apply to the heights (CF attributes do)."""
+    """Raise if the file has a factor, offset or mask that may apply to heights, except CF's."""
     for array in stored:
         name = re.split(r"[./]", array.name)[-1]
         applies = array.values.ndim == 0 or array.values.shape == heights.values.shape
@@ -166,7 +166,7 @@ def _oriented(
 
 
 def _decoded(heights: NamedArray, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """Return heights after scaling by their CF attributes, without sentinels, and list these."""
+    """Return heights scaled by their CF attributes, with sentinels as NaN, and a list of these."""
     z, missing = values.astype(float), []
     for key in ("_FillValue", "missing_value"):
         number = heights.attrs.get(key)
@@ -215,7 +215,7 @@ def _unit_of(array: NamedArray) -> str | None:
 
 
 def _name_without_unit(name: str) -> str:
-    """Return a name in words without its unit.
+    """Return the words of an array's name without its groups and unit.
 
     >>> _name_without_unit("scan/pixel_size_um"), _name_without_unit("dx")
     ('pixel size', 'dx')

@@ -84,7 +84,7 @@ def _unpacked(body: bytes, size: int) -> bytes:
 
 
 _DRAFTS = {b"aBCR-1.0": b"aISO-1.0", b"bBCR-1.0": b"bISO-1.0"}
-_DRAFT_MARK = 8  # bytes
+_DRAFT_MARK = 8  # bytes of the signature
 
 
 def is_sdf_draft(head: bytes) -> bool:

@@ -25,7 +25,7 @@ from tribolab.units.conversion import conversion
 _HEAD = 1 << 20  # bytes in which a matrix must begin
 _CUT = 8  # most bytes of an incomplete character at the end of the head
 _HEAD_LINES = 200  # most lines above a matrix
-_MIN_COLUMNS = 8  # least columns of a matrix; fewer may be a table
+_MIN_COLUMNS = 8  # fewest columns of a matrix; fewer may be a table
 _MAX_OF_LINE = 24  # most numbers per line of a profile that continues on the next line
 _NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")  # a name of a word and a number
 _ROWS = 4  # rows of equal width needed to recognise a matrix

@@ -22,12 +22,8 @@ from tribolab.reading.scans.grid import even
 from tribolab.reading.text.first_bytes import peek
 from tribolab.units.conversion import conversion, to_si
 
-_OF_PROGRAM = (
-    LookupError,
-    TypeError,
-    AttributeError,
-    AssertionError,
-)  # these say nothing about the file
+# errors that say nothing about the file
+_OF_PROGRAM = (LookupError, TypeError, AttributeError, AssertionError)
 
 
 class MissingUnitError(ReadError):
