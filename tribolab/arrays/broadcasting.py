@@ -23,7 +23,7 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 class OfRuns(Protocol[P, R]):
-    """Type of a function of a run that returns a list if it is given a list of runs."""
+    """Type of a function that takes one run, or a list of runs for which it returns a list."""
 
     @overload
     def __call__(self, runs: list[xr.Dataset], /, *args: Any, **kwargs: Any) -> list[R]: ...
@@ -33,7 +33,7 @@ class OfRuns(Protocol[P, R]):
 
 
 def of_runs(function: Callable[P, R], public_name: str = "") -> OfRuns[P, R]:
-    """Return a function of a run that also accepts a list of runs, and then returns a list.
+    """Extend a function of one run to lists of runs, for which it returns a list of results.
 
     Other arguments that are lists of datasets are paired with the runs; the rest apply to all.
 
@@ -98,7 +98,7 @@ def _require_run(function: str, given: Any) -> None:
 
 
 class OfLists(Protocol[P, R_co]):
-    """Type of a function that returns a list if it is given lists."""
+    """Type of a function that returns a list of results if arguments are lists."""
 
     @overload
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R_co: ...

@@ -85,7 +85,7 @@ def let_go() -> None:
 
 
 def tidy_up() -> None:
-    """Delete the scratch files of arrays that are no longer used, also if references are cyclic."""
+    """Delete the scratch files of arrays that are no longer used, even if references are cyclic."""
     if _mapped:
         gc.collect()
         let_go()

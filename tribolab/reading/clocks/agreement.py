@@ -20,9 +20,9 @@ class Estimate(NamedTuple):
 class ShiftEstimate(NamedTuple):
     """Estimate: motion clock + shift = force clock [s] in the middle of the motion log.
 
-    Away from the middle, `rate` times the time since then on the motion clock is added. `explained`
-    is the share of the force's variance explained by velocity classes, `ways` the result of each
-    method, and `refused` the reason why the shift is unreliable ("" if it is not).
+    At other times, `rate` times the time since the middle (motion clock) is added. `explained` is
+    the share of the variance of the force that velocity classes explain, `ways` the result of each
+    method, and `refused` the reason why the shift is unreliable ("" if it is reliable).
     """
 
     shift: float

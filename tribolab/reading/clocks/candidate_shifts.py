@@ -1,4 +1,4 @@
-"""Choice between several candidate shifts of two clocks, for repeated motion or late friction.
+"""Choice between several possible clock shifts, if motion repeats or friction is delayed.
 
 Friction is delayed by slack or builds up over a distance. Velocity classes may then explain it
 better one stroke or period away from the true shift. A fit of all effects of the motion

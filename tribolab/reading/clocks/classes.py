@@ -7,7 +7,7 @@ Shift the motion log by s, sort the samples of the friction force into classes o
 
 with N_k, S_k number and sum of the force samples in class k, and N, S, Q number, sum and sum of
 squares of all. As each term is a cross-correlation, FFT gives all s of a grid at once. The result
-is late, because friction builds up over a distance after each start and remains at rest.
+is late, because friction builds up over a distance after each start and persists at rest.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def velocity_classes(velocity: Array) -> NDArray[np.int64]:
 
 
 def _last_direction(way: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the direction of the last motion, as friction remains at rest."""
+    """Return the direction of the last motion, because friction persists at rest."""
     moved = np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))
     return way[moved]
 

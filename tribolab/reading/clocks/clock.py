@@ -119,7 +119,7 @@ def _even(start: float, rows: int, step: float) -> np.ndarray:
 
 
 def join_clocks(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray | str]:
-    """Shift times so that tables, and parts within them, follow each other, if so requested.
+    """Shift times so that tables and parts of tables follow each other, if the dialect says so.
 
     Returns
     -------

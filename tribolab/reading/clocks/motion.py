@@ -1,9 +1,9 @@
 """Detection of motion and its direction, from a velocity with noise, steps or jitter.
 
-A velocity reading at rest is not exactly zero: tachometer noise, encoder steps. It is averaged over
-as few samples as bring the noise below a fiftieth of the fastest speed; intervals within the noise
-or without displacement are rest. A stroke so slow that an encoder counts only occasionally is still
-a stroke: between two counts it moves at their mean speed.
+A velocity signal is not exactly zero at rest, because of noise or encoder steps. It is averaged
+over as few samples as bring the noise below a fiftieth of the highest speed; intervals within the
+noise or without displacement are rest. In a stroke so slow that an encoder counts only
+occasionally, the speed between two counts is their mean speed.
 """
 
 from __future__ import annotations

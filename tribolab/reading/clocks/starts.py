@@ -230,7 +230,7 @@ def _best_common_shift(logs: Logs, starts: list[_Start], shifts: Array) -> float
 
 
 def _shift_of_start(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
-    """Return shift and standard deviation from one start, with the same samples for all shifts."""
+    """Return the shift and its standard deviation [s] from the force around one start of motion."""
     window = start.time + np.array([shifts[0] - start.before, shifts[-1] + start.after])
     first, last = np.searchsorted(logs.force_time, window)
     part = slice(first, last, max(1, -(-(last - first) // _THINNED_SAMPLES)))

@@ -25,7 +25,7 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
     ReadError
         If the sheet does not exist, or the file is shorter than a record.
     ImportError
-        If the library for it is not installed; other libraries' own errors if it is damaged.
+        If the library for the format is not installed. Damage may raise other errors.
     """
     header = dialect.header
     if isinstance(dialect, PythonReader):

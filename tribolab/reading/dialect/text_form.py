@@ -20,7 +20,7 @@ _ANY = "any"
 _DELIMITERS = ("\t", ";", "|", ",")  # if several split a header equally, the first is used
 _ROWS = 20  # lines inspected below the names
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
-_OF_NUMBERS = "0123456789.,;|+-eE \t"  # characters of a row of numbers, which names no column
+_OF_NUMBERS = "0123456789.,;|+-eE \t"  # characters of numbers; a line with no others is no header
 _COMMA, _POINT = re.compile(r"\d,\d"), re.compile(r"\d\.\d")
 
 

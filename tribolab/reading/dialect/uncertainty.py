@@ -26,7 +26,7 @@ class Known(NamedTuple):
     Parameters
     ----------
     standard
-        Standard uncertainty, in the SI unit of its name.
+        Standard uncertainty, in the SI unit given for its name in `NAMES`.
     dof
         Its degrees of freedom.
     varies

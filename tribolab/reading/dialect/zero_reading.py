@@ -156,7 +156,7 @@ def zeros_of_derived(
 def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: Json) -> Json:
     """Set a stated load to zero where the zero of friction is read during motion.
 
-    Motion at zero friction is without contact: it is not sliding under that load.
+    If the zero is read during motion, the bodies are not in contact, and the load does not act.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """Writing of datasets into an open netCDF file: first all definitions, then all data.
 
-The library writes the definitions to the disk whenever data follow them; variable by variable that
-takes longer than writing the bytes of a run. Unsupported attributes become JSON text.
+The library writes all definitions to the disk each time data follow a definition. Variable by
+variable, this would take longer than writing the data of a run. Unsupported attributes become JSON
+text.
 """
 
 from __future__ import annotations

@@ -69,12 +69,12 @@ def write_result(value: object, file: io.BufferedIOBase, most: int) -> bool:
     file
         File open for writing, at its start.
     most
-        Most bytes of all its arrays.
+        Limit on the size of all arrays [bytes].
 
     Returns
     -------
     bool
-        Whether it was written; False if its arrays are larger.
+        True if the result was written, False if its arrays exceed the limit.
     """
     buffers: list[pickle.PickleBuffer] = []
     data = pickle.dumps(value, protocol=5, buffer_callback=buffers.append)

@@ -44,8 +44,8 @@ def refuse_outside(path: Path) -> None:
     Raises
     ------
     RefusedError
-        If it has a link to another file, a dataset in external storage, a virtual dataset, or a
-        filter that is not part of the HDF5 library. The message names it.
+        If the file has a link to another file, a dataset in external storage, a virtual dataset, or
+        a filter that is not part of the HDF5 library. The message names the object.
     """
     with path.open("rb") as file:
         head = file.read(len(_HDF5))

@@ -58,7 +58,7 @@ def unpacked(path: Path, head: bytes) -> Path:
     Raises
     ------
     ReadError
-        If it is damaged, or an archive of several files.
+        If the file is damaged, or an archive of several files.
     """
     if head.startswith(_GZIP):
         state = path.stat()

@@ -30,7 +30,7 @@ def parsed(path: Path, text: bytes) -> ElementTree.Element:
     Raises
     ------
     ReadError
-        If it is damaged, or declares an external entity or one that expands others.
+        If the file is damaged, or declares an external entity or one that expands others.
     """
     refuse_deep(path, path.name, [text])
     try:

@@ -47,7 +47,7 @@ def acceleration(
     signals
         Signals with ``position`` [m] or ``sliding_velocity`` [m/s] (time).
     time
-        [s] (time).
+        Time [s] (time).
     accuracy
         Wanted standard error [m/s2].
     widest
@@ -56,8 +56,8 @@ def acceleration(
     Returns
     -------
     Acceleration or None
-        From parabolas fitted to windows (Savitzky and Golay [1]_), as narrow as the noise allows;
-        None without a signal of at least 5 samples.
+        Acceleration from parabolas (Savitzky and Golay [1]_), fitted to windows that are as narrow
+        as the noise allows. None without a signal of at least 5 samples.
 
     References
     ----------

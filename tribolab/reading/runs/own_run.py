@@ -43,7 +43,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     Raises
     ------
     ReadError
-        If it cannot be read, has no time, or a quantity is not numeric over time.
+        If the file cannot be read, has no time, or a quantity is not numeric over time.
     """
     # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_netcdf

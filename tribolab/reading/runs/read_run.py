@@ -55,7 +55,7 @@ def read_run(
     Raises
     ------
     ReadError
-        If the file cannot be read; the message states the problem, its place and a remedy.
+        If the file cannot be read; the message states the problem, its location and a remedy.
     ConfigError
         If the instrument does not exist.
     """
@@ -91,7 +91,7 @@ def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
     Raises
     ------
     ReadError
-        If the file cannot be read; the message states the problem, its place and a remedy.
+        If the file cannot be read; the message states the problem, its location and a remedy.
     ConfigError
         If the instrument does not exist.
     """

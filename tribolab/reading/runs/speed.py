@@ -31,7 +31,7 @@ def add_speed(
     attrs
         Attributes of the run, including values outside the table; changed in place.
     time
-        [s] (time).
+        Time [s] (time).
     where
         The run, for messages.
     dialect

@@ -37,7 +37,7 @@ def velocity_of_strokes(
     Parameters
     ----------
     time
-        [s] (time), increasing.
+        Time [s] (time), increasing.
     friction
         Friction force or coefficient with its sign (time).
     stroke

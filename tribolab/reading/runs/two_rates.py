@@ -38,7 +38,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
     columns
         Arrays in SI by quantity (time); blank cells are NaN.
     time
-        [s] (time), increasing.
+        Time [s] (time), increasing.
 
     Returns
     -------

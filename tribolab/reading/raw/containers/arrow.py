@@ -22,7 +22,7 @@ def read_arrow(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged.
+        If the file is damaged.
     """
     # imported late: pyarrow loads slowly
     import pyarrow as pa

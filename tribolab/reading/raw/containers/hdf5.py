@@ -38,7 +38,7 @@ def read_hdf5(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged, or refers to data outside.
+        If the file is damaged, or refers to data outside.
     """
     # imported late: h5py loads slowly
     import h5py

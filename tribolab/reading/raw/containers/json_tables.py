@@ -47,7 +47,7 @@ def read_json(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If it has no columns of numbers.
+        If the file has no columns of numbers.
 
     Notes
     -----

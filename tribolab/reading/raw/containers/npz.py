@@ -23,7 +23,7 @@ def read_npz(path: Path) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged, unpacks to far more than its size, or contains Python objects.
+        If the file is damaged, unpacks to far more than its size, or contains Python objects.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:

@@ -37,7 +37,7 @@ def read_container(path: Path, form: str) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged or has too many columns; libraries may raise other errors.
+        If the file is damaged or has too many columns; libraries may raise other errors.
     ImportError
         If the library for it is not installed.
     """

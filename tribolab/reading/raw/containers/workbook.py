@@ -36,7 +36,7 @@ def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
     Raises
     ------
     ReadError
-        If it is damaged, or a sheet is larger than a table of numbers.
+        If the file is damaged, or a sheet is larger than a table of numbers.
     """
     cells: dict[str, Cells] = {}
     with report_damage(path, "workbook"):

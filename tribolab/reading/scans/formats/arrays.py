@@ -102,7 +102,7 @@ def is_map_file(path: Path) -> bool:
     Raises
     ------
     ReadError
-        If it is damaged, or several arrays may be the heights.
+        If the file is damaged, or several arrays may be the heights.
     """
     heights = _heights(path, read_arrays(path))
     return heights is not None and heights.values.ndim == 2

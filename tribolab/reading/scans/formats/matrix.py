@@ -64,7 +64,7 @@ def read_matrix(
     path
         The file.
     x_unit, height_unit
-        Units of positions and heights, if it states none.
+        Units of positions and heights, for files that state none.
 
     Returns
     -------
@@ -289,7 +289,7 @@ def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
         what = f"a matrix of {rows} x {columns} numbers that does not say {' or '.join(lacking)}"
         write = "write it above the numbers, as 'Pixel size: 0.5 um' and 'Height unit: um'"
         along = not (header.dx and header.dy)
-        if along and not header.without_unit:  # a unit in the file name would not help
+        if along and not header.without_unit:  # a unit in the file name would not suffice
             raise MissingUnitError(what, where=path, cure=write)
         cure = unit_remedy(path, along=along, up=header.height is None)
         raise MissingUnitError(what, where=path, cure=cures.either(write, cure))

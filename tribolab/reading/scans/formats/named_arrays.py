@@ -41,7 +41,7 @@ def read_arrays(path: Path) -> list[NamedArray]:
     Raises
     ------
     ReadError
-        If it is damaged.
+        If the file is damaged.
     """
     with path.open("rb") as file:
         head = file.read(16)

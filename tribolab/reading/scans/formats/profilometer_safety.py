@@ -34,8 +34,7 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
     Raises
     ------
     ReadError
-        If the file would unpack to more than it can hold, its structure is damaged in a way that
-        could crash native code, or it is text other than a profile.
+        If a zip archive or MAT file is damaged, or the file is text other than a profile.
     """
     with path.open("rb") as file:
         head = file.read(_MEGABYTE)

@@ -46,7 +46,7 @@ def read_surfer(
     MissingUnitError
         If the units are not given.
     ReadError
-        If it is damaged.
+        If the file is damaged.
     """
     content = path.read_bytes()
     try:

@@ -44,7 +44,7 @@ def read_zygo_xyz(path: Path, x_unit: str | None = None) -> xr.Dataset:
     MissingUnitError
         If the size of a pixel is not stated.
     ReadError
-        If it is damaged.
+        If the file is damaged.
     """
     above, mark, below = path.read_text("latin-1").partition("\n#")
     try:
