@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
@@ -15,12 +15,7 @@ from tribolab.app.streams import say
 from tribolab.core.untyped import Json
 from tribolab.qc.findings import exit_code, finding_texts
 
-if TYPE_CHECKING:
-    pass
-
 _SCHEMA_VERSION = 1
-
-
 _STYLES = {
     "error": "bold red",
     "fail": "red",
@@ -29,8 +24,6 @@ _STYLES = {
     "pass": "",
     "note": "",
 }
-
-
 _UNREADABLE = 3
 
 

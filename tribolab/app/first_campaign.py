@@ -10,12 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tribolab.app.questions.stated import Stated, describe_with
-from tribolab.app.raw_folder import (
-    as_pattern,
-    files_in,
-    is_results_folder,
-    sorted_by_content,
-)
+from tribolab.app.raw_folder import as_pattern, files_in, is_results_folder, sorted_by_content
 from tribolab.campaign.settings.files import scan_files
 from tribolab.campaign.settings.load import load_and_plan
 from tribolab.campaign.settings.naming.files_named import pattern_of_names
@@ -35,10 +30,7 @@ _ABOUT = (
 
 
 def campaign_file(
-    paths: Sequence[Path],
-    folder: Path,
-    instrument: str | None = None,
-    stated: Stated | None = None,
+    paths: Sequence[Path], folder: Path, instrument: str | None = None, stated: Stated | None = None
 ) -> tuple[Path, bool]:
     """Return the campaign file of the given paths; for raw files write one.
 

@@ -221,9 +221,7 @@ def _processes(jobs: int) -> contextlib.AbstractContextManager[Executor | None]:
 
 
 def _run_all(
-    work: list[_Job],
-    pool: Executor | None,
-    progress: Callable[[str, int, int], None] | None,
+    work: list[_Job], pool: Executor | None, progress: Callable[[str, int, int], None] | None
 ) -> dict[str, Json]:
     """Run all simulations, here or in other processes, and return the true values in order."""
     do = pool.map if pool else map

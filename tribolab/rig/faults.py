@@ -93,10 +93,7 @@ def inject(
         entry = {"name": name, "what": fault.what, "severity": fault.severity}
         listed = [*run.facts.get("faults", []), {**entry, "check": fault.check, **facts}]
         run = replace(
-            run,
-            force_log=force_log,
-            motion_log=motion_log,
-            facts={**run.facts, "faults": listed},
+            run, force_log=force_log, motion_log=motion_log, facts={**run.facts, "faults": listed}
         )
     return run
 

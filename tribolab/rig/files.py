@@ -76,11 +76,7 @@ def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
         "# rate: set by the step\n"
         "Time [s],Fx [N],Fz [N]\n"
     )
-    columns = [
-        (log.time.values, 5),
-        (log.friction_force.values, 3),
-        (log.normal_force.values, 3),
-    ]
+    columns = [(log.time.values, 5), (log.friction_force.values, 3), (log.normal_force.values, 3)]
     return head.encode() + fixed_table(columns, ",")
 
 

@@ -109,11 +109,7 @@ def read_forces(
 
 
 def read_motion(
-    signals: Signals,
-    time: np.ndarray,
-    encoder: Encoder,
-    errors: Errors,
-    rng: np.random.Generator,
+    signals: Signals, time: np.ndarray, encoder: Encoder, errors: Errors, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return position [m], velocity and set speed [m/s] as the table's controller records them."""
     position, velocity = signals.schedule.motion(time)

@@ -11,11 +11,7 @@ _FALL = 0.04  # share of a period that the sudden drop takes
 
 
 def sawtooth(
-    rng: np.random.Generator,
-    length: float,
-    wavelength: float,
-    drop: float,
-    jitter: float = JITTER,
+    rng: np.random.Generator, length: float, wavelength: float, drop: float, jitter: float = JITTER
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Return a sawtooth wave: linear rise, sudden drop, and random scatter of both.
 
@@ -44,11 +40,7 @@ def sawtooth(
 
 
 def rounded(
-    rng: np.random.Generator,
-    length: float,
-    wavelength: float,
-    drop: float,
-    jitter: float = JITTER,
+    rng: np.random.Generator, length: float, wavelength: float, drop: float, jitter: float = JITTER
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Return a rounded sawtooth wave, almost a sine; parameters as for `sawtooth`."""
     starts, periods, sizes = _periods(rng, length, wavelength, jitter)
@@ -76,11 +68,7 @@ def _periods(
 
 
 def irregular(
-    rng: np.random.Generator,
-    length: float,
-    wavelength: float,
-    drop: float,
-    jitter: float = JITTER,
+    rng: np.random.Generator, length: float, wavelength: float, drop: float, jitter: float = JITTER
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Return stick-slip without a period: thresholds and drops are random.
 

@@ -26,13 +26,11 @@ def compare(
     level: Annotated[
         list[str] | None,
         typer.Option(
-            help="The two surfaces or media to compare with --by; use it twice.",
-            show_default=False,
+            help="The two surfaces or media to compare with --by; use it twice.", show_default=False
         ),
     ] = None,
     margin: Annotated[
-        str,
-        typer.Option(help='Largest difference that is unimportant, e.g. "5 %" or "0.01".'),
+        str, typer.Option(help='Largest difference that is unimportant, e.g. "5 %" or "0.01".')
     ] = "",
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Output folder for the page and its tables.")

@@ -72,8 +72,7 @@ def run(
     i_know: Annotated[
         bool,
         typer.Option(
-            "--i-know",
-            help="Allow the campaign file to read and write outside its own folder.",
+            "--i-know", help="Allow the campaign file to read and write outside its own folder."
         ),
     ] = False,
     trust: Annotated[
@@ -108,12 +107,7 @@ def run(
     """
     with reported(debug, audience="campaign"):
         # imported late for a quick start
-        from tribolab.app.first_campaign import (
-            campaign_file,
-            results_of,
-            why_unread,
-            withdraw,
-        )
+        from tribolab.app.first_campaign import campaign_file, results_of, why_unread, withdraw
         from tribolab.app.run import run_campaign, run_here_if_lost
 
         run_it = partial(run_here_if_lost, say=partial(say, to_stderr=True))

@@ -30,8 +30,7 @@ def pack(
         bool, typer.Option("--raw", help="Include the raw files, not only their checksums.")
     ] = False,
     campaign: Annotated[
-        Path | None,
-        typer.Option(help="The campaign file.", show_default="next to the results"),
+        Path | None, typer.Option(help="The campaign file.", show_default="next to the results")
     ] = None,
     author: Annotated[str, typer.Option(help="Name of the author.")] = "",
     publisher: Annotated[str, typer.Option(help="Address or DOI of the publication.")] = "",
@@ -83,8 +82,7 @@ def verify(
         bool, typer.Option("--repair", help="Restore a lost .tribolab-results file.")
     ] = False,
     campaign: Annotated[
-        Path | None,
-        typer.Option(help="The campaign file.", show_default="next to the results"),
+        Path | None, typer.Option(help="The campaign file.", show_default="next to the results")
     ] = None,
     trust: Annotated[
         bool,

@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tribolab.app.progress import progress_bars
-from tribolab.app.reported import (
-    Debug,
-    Jobs,
-    Quiet,
-    leaving,
-    reported,
-)
-from tribolab.app.streams import say
-
-if TYPE_CHECKING:
-    pass
 from tribolab.app.commands.campaign import show_outcome
+from tribolab.app.progress import progress_bars
+from tribolab.app.reported import Debug, Jobs, Quiet, leaving, reported
+from tribolab.app.streams import say
 
 
 def demo(
@@ -56,8 +47,7 @@ def demo(
 
 def reproduce(
     output: Annotated[
-        Path,
-        typer.Option("--output", "-o", help="Output folder; your own files in it are kept."),
+        Path, typer.Option("--output", "-o", help="Output folder; your own files in it are kept.")
     ] = Path("tribolab-paper"),
     jobs: Jobs = None,
     quiet: Quiet = False,
@@ -91,10 +81,7 @@ def simulate(
     small: Annotated[
         bool, typer.Option("--small", help="Two surfaces, one load, three speeds.")
     ] = False,
-    fault: Annotated[
-        list[str] | None,
-        leaving("--fault", "simulate faults in a notebook"),
-    ] = None,
+    fault: Annotated[list[str] | None, leaving("--fault", "simulate faults in a notebook")] = None,
     jobs: Jobs = None,
     quiet: Quiet = False,
     debug: Debug = False,

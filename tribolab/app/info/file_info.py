@@ -22,11 +22,7 @@ from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import is_modulus_file, read_modulus_table
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.source import check_regular
-from tribolab.reading.runs.file_facts import (
-    describe_companion,
-    file_facts,
-    has_companion,
-)
+from tribolab.reading.runs.file_facts import describe_companion, file_facts, has_companion
 from tribolab.reading.runs.read_run import read_log as known_log
 from tribolab.reading.text.first_bytes import peek
 from tribolab.reading.unknown_run import draft_of, is_run_file, read_log

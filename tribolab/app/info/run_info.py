@@ -11,10 +11,7 @@ from tribolab.core.errors import shown
 from tribolab.core.wording import Count
 from tribolab.reading.interpret.missing import missing_inputs
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
-from tribolab.reading.runs.file_facts import (
-    CompanionFacts,
-    FileFacts,
-)
+from tribolab.reading.runs.file_facts import CompanionFacts, FileFacts
 from tribolab.reading.runs.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.reading.text.cells import split_name
 

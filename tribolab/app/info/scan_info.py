@@ -65,11 +65,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     from tribolab.records.surfaces.roughness_words import hardly_bends, roughness_u95
     from tribolab.records.wording import error_text
     from tribolab.surface.form import remove_form
-    from tribolab.surface.roughness import (
-        STANDARD_CUTOFF,
-        primary_roughness,
-        roughness_parameters,
-    )
+    from tribolab.surface.roughness import STANDARD_CUTOFF, primary_roughness, roughness_parameters
 
     if scan["height"].size > _LARGEST:
         return []

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from tribolab.app.questions.typed import (
-    turns_alone,
-)
+from tribolab.app.questions.typed import turns_alone
 from tribolab.core.errors import ReadError
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.missing_inputs import lacking
-from tribolab.reading.unknown.derivations.stated_lines import (
-    candidate_lines,
-    likely_value,
-)
+from tribolab.reading.unknown.derivations.stated_lines import candidate_lines, likely_value
 from tribolab.reading.unknown.model import Agreed
 from tribolab.reading.unknown.proposal.draft import Draft
 

@@ -15,9 +15,7 @@ from tribolab.app.questions.column_questions import (
     column_of_any,
     unit_guess,
 )
-from tribolab.app.questions.typed import (
-    amount_typed,
-)
+from tribolab.app.questions.typed import amount_typed
 from tribolab.core.errors import TribolabError
 from tribolab.reading.scans.extent import likely_height_unit
 from tribolab.reading.unknown.derivations.derive import what_follows
@@ -29,11 +27,7 @@ from tribolab.reading.unknown.derivations.stated_lines import (
 )
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import Understood
-from tribolab.reading.unknown.proposal.answers import (
-    ANGLE,
-    column_of,
-    corrected,
-)
+from tribolab.reading.unknown.proposal.answers import ANGLE, column_of, corrected
 from tribolab.reading.unknown.proposal.draft import Draft, as_profile
 from tribolab.units.conversion import positive
 

@@ -16,19 +16,12 @@ from tribolab.app.questions.amounts import (
     set_strokes,
     states_amount,
 )
-from tribolab.app.questions.typed import (
-    NUMBER,
-    as_amount,
-    as_strokes,
-    turning,
-)
+from tribolab.app.questions.typed import NUMBER, as_amount, as_strokes, turning
 from tribolab.core.errors import TribolabError, shown
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.reading.unit_texts import converts, is_unit
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
-from tribolab.reading.unknown.derivations.stated_lines import (
-    amount_of,
-)
+from tribolab.reading.unknown.derivations.stated_lines import amount_of
 from tribolab.reading.unknown.model import DraftColumn, Reason, other_units
 from tribolab.reading.unknown.proposal.answers import (
     ANGLE,

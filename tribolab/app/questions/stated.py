@@ -20,8 +20,7 @@ LoadOption = Annotated[
     typer.Option("--load", help="Normal force, if the files do not state it: 20N.", metavar="N"),
 ]
 RadiusOption = Annotated[
-    str | None,
-    typer.Option("--radius", help="Radius of the wear track: 15mm.", metavar="LENGTH"),
+    str | None, typer.Option("--radius", help="Radius of the wear track: 15mm.", metavar="LENGTH")
 ]
 SpeedOption = Annotated[
     str | None,

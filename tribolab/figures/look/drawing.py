@@ -115,9 +115,7 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
             if mark.panel == number:
                 _mark(axes, mark)
         _write_labels_above(
-            axes,
-            [mark for mark in spec.marks if mark.panel == number],
-            x_range(spec, number, seen),
+            axes, [mark for mark in spec.marks if mark.panel == number], x_range(spec, number, seen)
         )
         if any(series.style == "heat" for series in mine):
             _colour_bar(axes)

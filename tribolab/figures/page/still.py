@@ -20,15 +20,7 @@ from tribolab.figures.envelopes import thinned
 from tribolab.figures.page import marks
 from tribolab.figures.page.marks import PlacedPoint, coordinate
 from tribolab.figures.page.plain_data import plain_data, written_labels
-from tribolab.figures.spec import (
-    Axis,
-    FigureSpec,
-    Mark,
-    Series,
-    Style,
-    Width,
-    legend,
-)
+from tribolab.figures.spec import Axis, FigureSpec, Mark, Series, Style, Width, legend
 
 _WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], similar to paper
 _HEIGHTS = (300, 430, 580)  # height [px] of figures with one, two and three panels

@@ -13,15 +13,7 @@ from tribolab.figures.colours import BLACK, surface_colours
 from tribolab.figures.envelopes import thinned
 from tribolab.figures.labelled import SurfaceOrSeveral, by_load, by_surface
 from tribolab.figures.plotted import plotted
-from tribolab.figures.spec import (
-    Axis,
-    FigureSpec,
-    Mark,
-    Panel,
-    Series,
-    Style,
-    axis_of,
-)
+from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, Style, axis_of
 from tribolab.figures.subjects.surfaces import shaded_loads
 
 _MPA, _MM, _UM = 1e-6, 1e3, 1e6

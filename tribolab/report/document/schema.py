@@ -132,8 +132,7 @@ class ReportedCurve:
     runs: tuple[str, ...]
     points: tuple[Point, ...]
     points_as_found: Annotated[
-        tuple[Point, ...],
-        means("points without manual decisions; empty if unchanged"),
+        tuple[Point, ...], means("points without manual decisions; empty if unchanged")
     ]
     budget: Annotated[
         tuple[BudgetRow, ...], means("contributions to the uncertainty of the points")

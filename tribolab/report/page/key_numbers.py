@@ -59,11 +59,7 @@ def _extremes(known: Sequence[Mapping[str, Any]]) -> list[str]:
     high = max(known, key=lambda row: row["friction_coefficient"])
     low = min(known, key=lambda row: row["friction_coefficient"])
     half = half_speed(known[known.index(high) :]) if high["friction_coefficient"] > 0 else None
-    return [
-        _at_speed(high),
-        "not reached" if half is None else plain_speed(half),
-        _at_speed(low),
-    ]
+    return [_at_speed(high), "not reached" if half is None else plain_speed(half), _at_speed(low)]
 
 
 def _at_speed(row: Mapping[str, Any]) -> str:

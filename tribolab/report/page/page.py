@@ -171,8 +171,7 @@ def grouped_findings(findings: Sequence[Json]) -> list[Json]:
         part = name if kind in ("surface", "model") else ""
         key = finding["severity"], kind if part else where, message
         row = rows.setdefault(
-            key,
-            {"severity": key[0], "where": key[1], "message": message, "runs": [], "parts": []},
+            key, {"severity": key[0], "where": key[1], "message": message, "runs": [], "parts": []}
         )
         row["runs"] += [name for name in finding["run"].split("; ") if name]
         row["parts"] += [part] if part else []

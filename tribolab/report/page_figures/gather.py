@@ -131,9 +131,6 @@ def figure_subjects(
             [surface.data_file for surface in done],
         ),
         Subject(
-            "sliding",
-            partial(sliding_specs, judged, surfaces),
-            (judged, surfaces),
-            list(traced),
+            "sliding", partial(sliding_specs, judged, surfaces), (judged, surfaces), list(traced)
         ),
     ]

@@ -70,7 +70,7 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
             width="whole",
             height=430,
             numbers=_numbers(legs),
-        ),
+        )
     ]
 
 

@@ -10,12 +10,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.wording import force_text, number
-from tribolab.figures.spec import (
-    Axis,
-    FigureSpec,
-    Panel,
-    Series,
-)
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.figures.subjects.slip import waveform_map
 from tribolab.records.models.mode_record import ModeRecord

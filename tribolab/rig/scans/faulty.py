@@ -39,10 +39,7 @@ def fault_of_campaign(name: str) -> Fault | ScanFault:
 
 
 def write_faulty_scans(
-    scans: xr.Dataset,
-    faults: Sequence[str],
-    folder: Path,
-    rng: int | np.random.Generator = 0,
+    scans: xr.Dataset, faults: Sequence[str], folder: Path, rng: int | np.random.Generator = 0
 ) -> dict[str, dict[str, list[dict[str, str]]]]:
     """Write simulated scans with faults, as the stylus instrument exports them.
 
