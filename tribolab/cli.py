@@ -1,4 +1,4 @@
-"""The command line. Heavy imports wait in the commands, so that --help answers at once."""
+"""The command line. Commands import heavy modules only when run, so that --help is fast."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ app = typer.Typer(
 
 def _version(asked: bool) -> None:
     if asked:
-        # late: looks the installed package up
+        # imported late: looks up the installed package
         from tribolab.version import __version__
 
         say(f"tribolab {__version__}")
@@ -44,7 +44,7 @@ def _options(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
     ] = False,
 ) -> None:
-    """Take the options that stand before a command."""
+    """Accept the options that precede a command."""
 
 
 lab = typer.Typer(

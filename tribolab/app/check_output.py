@@ -28,7 +28,7 @@ _UNREADABLE = 3
 
 
 def code_of(checked: Sequence[Checked], fail_on: str) -> int:
-    """Return exit code 3 for unreadable files or crashed checks, 1 from `fail_on` on, else 0."""
+    """Return the exit code: 3 for unreadable files, 1 for objections from `fail_on` on, else 0."""
     code = exit_code({c.status for c in checked if not c.error}, fail_on)
     return _UNREADABLE if any(c.error for c in checked) else code
 
@@ -36,7 +36,7 @@ def code_of(checked: Sequence[Checked], fail_on: str) -> int:
 def checked_table(
     rows: Iterable[Mapping[str, Any]], *, notes: bool = False, everything: bool = False
 ) -> Table:
-    """Return a table of objections, most severe first, with notes or all checks on request."""
+    """Return a table of suspect and failed checks, most severe first; all checks on request."""
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
@@ -50,7 +50,7 @@ def checked_table(
 def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = False) -> None:
     """Print the findings to stdout, and the reasons for unreadable files to stderr.
 
-    For several files the last lines count them by status, and name those with objections.
+    For several files, the last lines count files by status and name those with objections.
     """
     # imported late for a quick start
     from tribolab.app.console import console
@@ -70,7 +70,7 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
 
 
 def count_lines(checked: Sequence[Checked]) -> list[str]:
-    """Return counts of the checked files by status, and those with objections, worst first.
+    """Return a line with the number of files per status, and one with the files to look at.
 
     Examples
     --------
@@ -89,12 +89,12 @@ def count_lines(checked: Sequence[Checked]) -> list[str]:
 
 
 def as_json(checked: Sequence[Checked], fail_on: str) -> str:
-    """Return `document` as strict JSON."""
+    """Return the findings on all checked files as JSON text without NaN."""
     return json.dumps(document(checked, fail_on), indent=1, allow_nan=False)
 
 
 def document(checked: Sequence[Checked], fail_on: str) -> Json:
-    """Return everything as one JSON document; unknown values are null."""
+    """Return the findings on all checked files as plain data for JSON."""
     # imported late: looks up the installed package
     from tribolab.version import __version__
 

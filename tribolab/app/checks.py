@@ -1,4 +1,4 @@
-"""Findings of `tribolab check` for several files, as text or JSON."""
+"""Checks of raw files for `tribolab check`: runs, scans and results of roughness testers."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ class Checked:
 
     @classmethod
     def of(cls, files: Iterable[Path], findings: Findings, kind: str = "run") -> Checked:
-        """Return the findings to display."""
-        # a run of two logs is named after the first
+        """Return the findings on some files as a result of the checks."""
+        # the summary follows the name of the file, so it must not repeat the name
         summary = findings.summary.removeprefix(findings.name).removeprefix(": ")
         return cls(tuple(files), tuple(findings.rows), findings.status, summary, kind=kind)
 
@@ -65,7 +65,7 @@ class Checked:
 
 @dataclass(frozen=True)
 class CheckTask:
-    """Files to check together: a run, repeated scans with testers' results, or results."""
+    """Files to check together: a run; repeated scans with testers' results; or such results."""
 
     kind: str
     files: tuple[Path, ...]
@@ -97,7 +97,7 @@ def raw_files_of(paths: Sequence[Path]) -> list[tuple[list[Path], str | None]]:
 
 
 def _files_below(path: Path) -> Iterator[tuple[Sequence[Path], str | None]]:
-    """Yield the raw files of a folder or campaign, with their instrument."""
+    """Yield groups of raw files in a folder or campaign, each with its instrument."""
     # imported late: single files need no campaign
     from tribolab.app.first_campaign import NAME
     from tribolab.app.raw_folder import files_in
@@ -121,7 +121,7 @@ def _files_below(path: Path) -> Iterator[tuple[Sequence[Path], str | None]]:
 
 
 class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
-    """Stage of `tribolab check`.
+    """Work of `tribolab check`: a task for each run and for each set of repeated scans.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
         self._repeats = repeats
 
     def plan(self) -> list[CheckTask]:
-        """Return tasks with the files to be compared."""
+        """Return a task for each run, each set of repeated scans, and each tester's result."""
         kinds = {
             group: _kind_of(group[0], self._instrument) if len(group) == 1 else "run"
             for group in self.groups
@@ -164,17 +164,17 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
     def failed(self, task: CheckTask, error: BaseException) -> list[Checked]:
         """Return the reason why files could not be checked."""
         if isinstance(error, ConfigError):
-            raise error  # a wrong instrument concerns every file
+            raise error  # the instrument is wrong for every file
         groups = [task.files] if task.kind == "run" else [(file,) for file in task.files]
         return [Checked(files, error=_error_text(error), kind="file") for files in groups]
 
     def keep(self, task: CheckTask, place: int, record: list[Checked]) -> list[Checked]:
-        """Return the record; nothing is stored."""
+        """Return the results of the checks unchanged, because nothing is stored."""
         return record
 
 
 def _error_text(error: BaseException) -> str:
-    """Return why a file cannot be read; for unexpected errors with their location."""
+    """Return why a file cannot be read; for an unexpected error also where it was raised."""
     foreseen = isinstance(error, TribolabError | OSError)
     return message_for(error, "terminal") if foreseen else explain(error)[0]
 
@@ -197,12 +197,12 @@ def check_files(
     Parameters
     ----------
     paths
-        Raw files of any kind; the two logs of a run are one run.
+        Raw files of any kind; two logs of one run are checked as one run.
     instrument
         Their instrument; by default recognised by content.
     repeats
-        Whether the scans are of one surface and compared with each other. By default scans are
-        compared if only the last number of their names differs.
+        Whether all scans are of one surface, so that they are compared with each other. By default,
+        scans are compared if their names differ only in the last number.
     executor
         Executor; without one everything is done in this process.
     progress
@@ -269,5 +269,5 @@ _WORK = {"run": _check_run, "scan": _check_scans, "results": _check_results}
 
 
 def _are_results_of(results: Path, scan: Path) -> bool:
-    """Whether results have the same folder and base name as a scan."""
+    """Whether a file of results has the same folder and base name as a scan."""
     return results.parent == scan.parent and results.stem.casefold() == scan.stem.casefold()

@@ -1,4 +1,4 @@
-"""Console on stdout without control characters from files."""
+"""Console for tables on standard output, which escapes control characters."""
 
 from __future__ import annotations
 

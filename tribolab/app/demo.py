@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def run_demo(
     folder: Path, *, jobs: int | None = None, progress: Progress | None = None
 ) -> tuple[Outcome, DemoComparison]:
-    """Simulate the reference campaign unless it exists, analyse it, and compare it with the truth.
+    """Simulate and analyse the reference campaign, and compare the results with the truth.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def run_demo(
     with workers(jobs, modules=SIMULATION + ANALYSIS) as pool:
         if isinstance(pool, LastingPool):
             pool.prepare()
-        # imported only now, in parallel with the same imports of the workers
+        # this process imports while the workers do
         with importing():
             # imported late: the workers have started
             from tribolab.app import plain  # noqa: F401

@@ -1,4 +1,4 @@
-"""First campaign file for raw files without one: `tribolab run` on the raw files."""
+"""The campaign file that `tribolab run` writes for raw files that have none."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _ABOUT = (
 def campaign_file(
     paths: Sequence[Path], folder: Path, instrument: str | None = None, stated: Stated | None = None
 ) -> tuple[Path, bool]:
-    """Return the campaign file of the given paths; for raw files write one.
+    """Return the campaign file that the paths name; for raw files, write one first.
 
     Parameters
     ----------
@@ -40,9 +40,10 @@ def campaign_file(
         A campaign file; a folder with a campaign file or raw files; or raw files (runs and scans)
         in any folders. If empty, the current folder.
     folder
-        Folder for a new file, unless `paths` is a folder. An equal file there is reused; one
-        written for the same files without their instrument is replaced. If there is one for other
-        files, the new file and its results are named after the first raw file.
+        Folder for a new campaign file, unless `paths` is a folder. If it has an equal campaign
+        file, that is reused. One written for the same raw files, but without their instrument, is
+        replaced. If it has one for other raw files, the new campaign file and its results are named
+        after the first raw file.
     instrument
         Instrument of the raw files: a name, or the file of a dialect.
     stated
@@ -51,7 +52,7 @@ def campaign_file(
     Returns
     -------
     tuple
-        The file or folder, and whether it was written.
+        The campaign file or its folder, and whether it was written now.
 
     Raises
     ------
@@ -76,7 +77,7 @@ def campaign_file(
     described = described and instrument is not None
     whole = [path.resolve() for path in paths]
     file = folder / NAME
-    if file.exists() and not _names(file, whole):  # it is for other files
+    if file.exists() and not _names(file, whole):  # the existing file is for other raw files
         file = folder / f"campaign_{safe_name(paths[0].stem)}.toml"
     results = results_of(file)
     lines = stated.run_lines(described=described)
@@ -101,7 +102,7 @@ def campaign_file(
 
 
 def _raw_files(paths: Sequence[Path], folder: Path) -> tuple[list[Path], Path, Path | None]:
-    """Return raw files, the folder for their campaign file, and that file if it exists."""
+    """Return the raw files and a folder for their campaign file, or the named campaign file."""
     if len(paths) == 1 and paths[0].is_dir() and not (paths[0] / NAME).exists():
         found = files_in(paths[0])
         if not found:
@@ -117,7 +118,7 @@ def _raw_files(paths: Sequence[Path], folder: Path) -> tuple[list[Path], Path, P
     raw = [path for path in left if path not in ours]
     whole = [path.resolve() for path in raw if may_hold_data(path)]
     own = [path for path in ours if path.suffix != ".toml" or _names_all(path, whole)]
-    if raw and len(own) == 1 and ours:  # `run *.*` repeated
+    if raw and len(own) == 1 and ours:  # `tribolab run *.*` was repeated
         return [], folder, own[0]
     for path in left:
         if not path.is_file() or path in ours:
@@ -140,7 +141,7 @@ def _names_all(file: Path, paths: Sequence[Path]) -> bool:
 
 
 def results_of(file: Path) -> str:
-    """Return the results folder of a campaign file that is written here, relative to it.
+    """Return the name of the results folder for a campaign file with a given name.
 
     >>> results_of(Path("campaign.toml")), results_of(Path("campaign_disc_7.toml"))
     ('results', 'results_disc_7')
@@ -149,7 +150,7 @@ def results_of(file: Path) -> str:
 
 
 def _names(file: Path, paths: Sequence[Path]) -> bool:
-    """Whether a campaign file names any of the files; an unreadable one counts as such."""
+    """Whether a campaign file names any of these raw files, or cannot be read."""
     try:
         campaign, runs = load_and_plan(file)
         named = [path for run in runs for path in run.files] + scan_files(campaign)
@@ -159,14 +160,14 @@ def _names(file: Path, paths: Sequence[Path]) -> bool:
 
 
 def withdraw(file: Path, results: Path | None = None) -> None:
-    """Remove a campaign file that was written for raw files of which none could be read.
+    """Remove a new campaign file whose raw files could not be read, and its empty results.
 
     Parameters
     ----------
     file
-        From `campaign_file`.
+        Campaign file that `campaign_file` wrote.
     results
-        Folder of its results, which contains failures only.
+        Folder of its results; it is kept if it contains other files.
     """
     file.unlink(missing_ok=True)
     if results is not None and results.is_dir() and not Ledger.read(results).foreign():
@@ -174,7 +175,7 @@ def withdraw(file: Path, results: Path | None = None) -> None:
 
 
 def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str]:
-    """Return why raw files cannot be read, for the command line; empty if one can.
+    """Return the reason for each raw file that cannot be read; empty if any can be read.
 
     Parameters
     ----------
@@ -244,7 +245,7 @@ def campaign_text(
     if kinds.results and not (kinds.runs or kinds.scans or kinds.moduli):
         from tribolab.app.info.file_info import file_lines  # imported late for a quick start
 
-        file_lines(kinds.results[0])  # raises if it is another test, and says which
+        file_lines(kinds.results[0])  # raises an error that names the test if it is another test
         raise ConfigError(f"{kinds.results[0]}: it holds results, no run and no scan")
     lines = [_ABOUT, "[campaign]", f"name = {quoted(name)}", f"raw = {quoted(where)}"]
     lines += [f"output = {quoted(results)}"] if results != RESULTS else []
@@ -269,7 +270,7 @@ def campaign_text(
 
 
 def surface_names(groups: Sequence[Sequence[Path]]) -> list[str]:
-    """Return names of surfaces from their scans, without the number of the scan.
+    """Return a name for each group of scans of one surface: the common part of the file names.
 
     Equal names are extended by their folder, else by their suffix, else by a number.
 
@@ -290,7 +291,7 @@ def surface_names(groups: Sequence[Sequence[Path]]) -> list[str]:
 
 
 def _instrument_line(instrument: str | None, folder: Path) -> list[str]:
-    """Return the line that names the instrument; a dialect's path relative to the campaign."""
+    """Return the line that names the instrument; the path of a dialect is relative to `folder`."""
     if instrument is None:
         return []
     from tribolab.reading.dialect.write import quoted  # imported late for a quick start

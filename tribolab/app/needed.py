@@ -1,4 +1,4 @@
-"""Names of modules that workers of the commands need; a pool imports them once for all."""
+"""Names of the modules that a pool of processes imports before its first task."""
 
 FILES = (
     "tribolab.app.plain",
@@ -9,7 +9,7 @@ FILES = (
 
 SIMULATION = ("tribolab.app.plain", "tribolab.rig.campaign", "scipy.linalg")
 
-# the stages, then their late imports in this order
+# the module with all stages first, then what the stages import late
 ANALYSIS = (
     "tribolab.app.plain",
     "tribolab.campaign.pipeline",

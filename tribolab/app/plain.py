@@ -1,4 +1,4 @@
-"""Import this first in a process that creates all its datasets itself: `plain_arrays_only`."""
+"""Module that calls `plain_arrays_only` when imported, for worker processes."""
 
 from tribolab.app.quick import plain_arrays_only
 

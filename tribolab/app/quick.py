@@ -1,4 +1,4 @@
-"""Fast start for commands that should answer immediately."""
+"""Faster imports, for commands that should answer immediately."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def plain_arrays_only() -> None:
 
 @contextlib.contextmanager
 def importing() -> Iterator[None]:
-    """Disable garbage collection during imports, whose objects all remain.
+    """Disable garbage collection during imports, because it would free nothing.
 
     Scanning their hundred thousand small objects repeatedly takes 0.1 s; afterwards they are
     excluded from collection.

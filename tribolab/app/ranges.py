@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def range_of(low: str, high: str) -> str:
-    """Return a range as text; a single value if both ends read the same.
+    """Return "low to high", or a single value if both texts are equal.
 
     Examples
     --------

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.reading.folder_content import contents_of, may_hold_data
 
-_MAX_FILES = 5000  # most files in a folder; e.g. a whole disk is not a campaign
+_MAX_FILES = 5000  # most files of a campaign, so that a whole disk is not searched
 
 
 class RawFiles(NamedTuple):
@@ -22,9 +22,9 @@ class RawFiles(NamedTuple):
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Return the files of a folder and those below it that may hold data, in order of name.
+    """Return the files of a folder and its subfolders that may contain data, sorted by name.
 
-    Hidden files, results of `tribolab run`, and types of files without measurements are left out.
+    Hidden files, results of `tribolab run`, and files without measurements are left out.
     """
     found: list[Path] = []
     for path in sorted(folder.iterdir()):
@@ -45,12 +45,12 @@ def is_results_folder(path: Path) -> bool:
 def sorted_by_content(
     groups: Sequence[Sequence[Path]], instrument: str | None = None
 ) -> tuple[list[list[Path]], RawFiles]:
-    """Return the runs as groups of their logs, and all files by content.
+    """Return the logs of each run, and all files sorted into runs, scans, moduli and results.
 
     Parameters
     ----------
     groups
-        Groups of files that belong together if they are runs.
+        Groups of files; each group is one run if its files are logs.
     instrument
         Instrument of the raw files: a name, or the file of a dialect.
     """

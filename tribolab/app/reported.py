@@ -1,4 +1,4 @@
-"""Common parts of all commands: options, and errors as one-line messages with exit codes."""
+"""Options common to several commands, and conversion of errors to messages and exit codes."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ _Given = TypeVar("_Given")
 
 
 def leaving(name: str, instead: str) -> Any:
-    """Return a deprecated option, hidden in --help, that still works with a warning.
+    """Return a deprecated option: it still works, with a warning, but is hidden in --help.
 
     Parameters
     ----------
     name
-        Name of the option; of a switch both, e.g. ``--repeats/--no-repeats``.
+        Name of the option; for a switch both names, e.g. ``--repeats/--no-repeats``.
     instead
         Replacement in words.
     """
@@ -56,7 +56,7 @@ def leaving(name: str, instead: str) -> Any:
 
 
 def renamed(command: Callable[..., None], old: str, new: str) -> Callable[..., None]:
-    """Return a command under its old name, which warns with the new name."""
+    """Return a command for its old name, with a warning that states the new name."""
 
     @functools.wraps(command)
     def under_old_name(**given: Any) -> None:
@@ -72,7 +72,7 @@ def _warn_of(old: str, instead: str) -> None:
 
 @contextlib.contextmanager
 def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
-    """Convert an error to a short message on stderr for the audience, and an exit code."""
+    """Print any error in this context as a short message, and exit with the fitting code."""
     try:
         yield
     except (ConfigError, UnitError) as error:
@@ -94,7 +94,7 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
 
 
 def fail(message: str, code: int, debug: bool) -> NoReturn:
-    """Print an error message to stderr and exit with a code."""
+    """Print an error message to stderr and exit; raise the original error if `debug`."""
     if debug:
         raise
     say(f"tribolab: {message}", to_stderr=True)

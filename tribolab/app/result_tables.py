@@ -35,7 +35,7 @@ _NONE = "–"
 
 
 def answer_table(outcome: Outcome) -> Table | None:
-    """Return the table that answers the test, for a few runs; None if the curves do so."""
+    """Return a table of starts, ramps or running-in that suits the test; None if curves suffice."""
     return _starts_or_ramps(outcome) or running_in_table(outcome)
 
 
@@ -50,7 +50,7 @@ def _table(texts: Sequence[str], numbers: Sequence[str]) -> Table:
 
 
 def _starts_or_ramps(outcome: Outcome) -> Table | None:
-    """Return static friction after rests, or the extremes of ramps; None for other tests."""
+    """Return static friction after each rest, or highest and lowest friction of speed ramps."""
     runs = outcome.runs[:_MAX_ROWS]
     entries = [outcome.store.get("run", run.name, RunRecord) for run in runs]
     started = [entry.record for entry in entries if entry and starts_of(entry.record)]
@@ -75,7 +75,7 @@ def _starts_or_ramps(outcome: Outcome) -> Table | None:
 
 
 def running_in_table(outcome: Outcome) -> Table | None:
-    """Return running-in, steady and mean friction of a few runs, or None if none runs in."""
+    """Return running-in distance, steady and mean µ of up to 12 runs; None if no run runs in."""
     found: list[tuple[str, RunningIn]] = []
     for run in outcome.runs[: _MAX_ROWS + 1]:
         entry = outcome.store.get("run", run.name, RunRecord)
@@ -102,7 +102,7 @@ def _cells(settled: RunningIn) -> tuple[str, str, str]:
 
 
 def outcome_table(outcome: Outcome) -> Table:
-    """Return one row per measured curve: conditions, speeds and friction."""
+    """Return a table with a row for each measured curve: conditions, speeds and friction."""
     done = [curve for curve in outcome.curves if curve.done]
     # without labels the run's name distinguishes rows
     nameless = any(not (curve.surface or curve.medium) for curve in done)
@@ -122,7 +122,7 @@ def outcome_table(outcome: Outcome) -> Table:
 
 
 def points_table(outcome: Outcome) -> Table | None:
-    """Return friction at each speed if there is only one curve with a few points; else None."""
+    """Return a table of friction at each speed if there is a single, short curve; else None."""
     done = [curve for curve in outcome.curves if curve.done]
     rows = _points(done[0], outcome) if len(done) == 1 else ()
     known = [
@@ -173,7 +173,7 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
 
 
 def _largest_error(points: Sequence[Row], with_zero: bool = True) -> str:
-    """Return the largest U95, and whether it is within or between runs."""
+    """Return text on the largest U95 of some points, and what it includes."""
     own = [row.get("friction_coefficient_U95") for row in points]
     known = [float(v) for v in own if v is not None]
     if not known:
@@ -187,7 +187,7 @@ def _largest_error(points: Sequence[Row], with_zero: bool = True) -> str:
 
 
 def _steady(curve: CurveOutcome, outcome: Outcome) -> Mean | None:
-    """Return the mean steady friction of a few repeats that run in; else None."""
+    """Return the mean steady friction of repeats with running-in; None without running-in."""
     rows = running_in_of(curve, outcome)
     settled = [row for each in rows.values() for row in each]
     if not steady_levels(rows) or not any(row.changes for row in settled):
@@ -196,7 +196,7 @@ def _steady(curve: CurveOutcome, outcome: Outcome) -> Mean | None:
 
 
 def _zero_unknown(curve: CurveOutcome, outcome: Outcome) -> bool:
-    """Return whether U95 of a few runs does not include their zero."""
+    """Whether the U95 of some run of a curve excludes the unknown zero of its friction force."""
     few = curve.run_names if len(curve.run_names) <= _MAX_READ else ()
     entries = [outcome.store.get("run", name, RunRecord) for name in few]
     checks = [asdict(row) for entry in entries if entry for row in entry.record.facts.checks]
@@ -204,7 +204,7 @@ def _zero_unknown(curve: CurveOutcome, outcome: Outcome) -> bool:
 
 
 def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
-    """Return the friction of the segments; without a speed there is no curve."""
+    """Return the last cells of a row for runs without a curve: friction of their segments."""
     entries = [outcome.store.get("run", name, RunRecord) for name in curve.run_names]
     rows = [row for entry in entries if entry for row in entry.record.facts.segments]
     known = [v for row in rows if (v := row.get("friction_coefficient")) is not None]
@@ -216,7 +216,7 @@ def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
 
 
 def running_in_of(curve: CurveOutcome, outcome: Outcome) -> dict[str, tuple[RunningIn, ...]]:
-    """Return the running-in of a few runs of a curve, by name."""
+    """Return the running-in of each run of a curve, by name; empty if there are many runs."""
     few = curve.run_names if len(curve.run_names) <= _MAX_READ else ()
     entries = {name: outcome.store.get("run", name, RunRecord) for name in few}
     return {name: entry.record.facts.running_in for name, entry in entries.items() if entry}

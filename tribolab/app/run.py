@@ -126,7 +126,7 @@ def run_campaign(
     with staged(place) as folder:
         given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler, ANALYSIS)
         with given as pool:
-            if isinstance(pool, LastingPool):  # the workers import the same in parallel
+            if isinstance(pool, LastingPool):  # workers import modules while this process does
                 pool.prepare()
             # imported late: not needed if nothing has changed
             from tribolab.campaign.pipeline import process
@@ -152,7 +152,7 @@ def run_campaign(
 
 
 def _is_one_changed(runs: Sequence[PlannedRun], place: Path) -> bool:
-    """Whether the settings of exactly one run, e.g. a decision on it, changed since the results."""
+    """Whether exactly one run has new settings, e.g. a decision, since the last analysis."""
     known = Catalogue.of(place).fingerprints("run")
     changed = [run for run in runs if known.get(run.name) != fingerprint_of(run.config_sha256)]
     return bool(known) and len(changed) == 1
@@ -165,7 +165,7 @@ def run_here_if_lost(
     scheduler: str | None,
     **options: Any,
 ) -> Outcome:
-    """Run a campaign on a cluster, or on this computer if the cluster is lost or does not answer.
+    """Run a campaign on a cluster; if that is lost or does not answer, on this computer.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def run_here_if_lost(
 
 
 def _matches_results(campaign: Campaign, raw: Path, place: Path) -> bool:
-    """Whether a pattern of raw files could match files in the results folder."""
+    """Whether a pattern in the campaign file for raw files could match results in `place`."""
     depth = len(place.relative_to(raw).parts)
     patterns = [p for entry in campaign.run for p in entry.files]
     patterns += [p for surface in campaign.surface for p in surface.scans or ()]
@@ -209,7 +209,7 @@ def _refuse_python_readers(campaign: Campaign) -> None:
 
 
 def _refuse_outside_folder(campaign: Campaign, place: Path) -> None:
-    """Raise if the results folder is outside the campaign's folder (foreign campaign files)."""
+    """Raise if the results folder is outside the campaign's folder, as in a foreign campaign."""
     home = campaign.file.resolve().parent
     if not place.is_relative_to(home):
         raise ConfigError(
@@ -225,7 +225,7 @@ def _refuse_outside_folder(campaign: Campaign, place: Path) -> None:
 
 
 def _refuse_input_folder(campaign: Campaign, place: Path) -> None:
-    """Raise if the results folder contains, or is inside, an input of the campaign."""
+    """Raise if results would be in the folder of raw files, or if their folder has an input."""
     raw = campaign.raw.resolve()
     if place.is_relative_to(raw) and _matches_results(campaign, raw, place):
         raise ConfigError(

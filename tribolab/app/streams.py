@@ -1,4 +1,4 @@
-"""Output and signals of the command line, for all terminals, pipes and interruptions."""
+"""Standard output and error of the command line, and clean exit after signals."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ _PLAIN = str.maketrans(
 )
 _ERRORS = "tribolab_plain"
 _Hook = Callable[["sys.UnraisableHookArgs"], object]
-_AGAIN = 0.01  # s, until compiled code has returned
+_AGAIN = 0.01  # s before a signal is sent again; compiled code has returned by then
 _UNWRITABLE = 3  # exit code, as for results that cannot be written
 
 
 def say(text: str, *, to_stderr: bool = False) -> None:
-    """Print a line with control characters escaped, so that it cannot steer the terminal."""
+    """Print a line; control characters are escaped, so that a file cannot steer the terminal."""
     print(harmless(text), file=sys.stderr if to_stderr else sys.stdout, flush=True)
 
 
 class Terminated(KeyboardInterrupt):
-    """Raised on SIGTERM or SIGHUP, to clean up as after Ctrl-C."""
+    """Exception raised by SIGTERM or SIGHUP, so that the program cleans up as after Ctrl-C."""
 
     def __init__(self, number: int) -> None:
         super().__init__(signal.Signals(number).name)
@@ -41,9 +41,9 @@ class Terminated(KeyboardInterrupt):
 
 
 class _Pipe(io.RawIOBase):
-    """File descriptor for writing that ignores a closed pipe.
+    """Stream to a file descriptor that ignores a closed pipe.
 
-    So ``| head -1`` shortens the output, but changes neither the work nor the exit code. Other
+    Hence ``| head -1`` shortens the output, but the command completes with its exit code. Other
     errors, e.g. a full disk, are in `failed`.
     """
 
@@ -73,7 +73,7 @@ class _Pipe(io.RawIOBase):
 
 
 def _plain(error: UnicodeError) -> tuple[str, int]:
-    """Replace characters missing in an encoding by ASCII; escape undecodable bytes."""
+    """Return an ASCII replacement for characters that the encoding of a stream does not have."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     text = error.object[error.start : error.end].translate(_PLAIN)
@@ -132,7 +132,7 @@ def _stop(number: int, frame: FrameType | None) -> NoReturn:
 
 
 def _resend(before: _Hook, unraisable: sys.UnraisableHookArgs) -> None:
-    """Send a signal again that was raised where compiled code swallows exceptions."""
+    """Send a signal again if compiled code has swallowed the exception that it raised."""
     error = unraisable.exc_value
     if not isinstance(error, KeyboardInterrupt):
         before(unraisable)

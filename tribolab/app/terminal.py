@@ -35,14 +35,14 @@ _SHOWN, _HANDFUL = 10, 5
 
 
 def verdict_line(outcome: Outcome) -> str:
-    """Return the verdict in one word, and the numbers of usable runs and scans."""
+    """Return the verdict on a campaign in one word, and the numbers of usable runs and scans."""
     uncertain = bool(_uncertain(outcome))
     word, counts = verdict_of(outcome.runs, outcome.surfaces, uncertain=uncertain)
     return f"{word:7s} {counts}{', with doubts listed below' * (word == SUSPECT)}"
 
 
 def _uncertain(outcome: Outcome) -> list[tuple[float, str]]:
-    """Return the conditions whose repeats leave their mean uncertain: U95 over mean, and name."""
+    """Return U95 divided by the mean, and the name, of each condition with an uncertain mean."""
     found = []
     for curve in outcome.curves:
         entry = outcome.store.get("curve", curve.name, CurveRecord) if curve.done else None
@@ -62,7 +62,7 @@ def _is_odd(name: str, outcome: Outcome) -> bool:
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """Return lines on the numbers of runs done, reused and failed, with notes on them."""
+    """Return lines on the runs, segments and surfaces of a campaign, and on doubts about them."""
     done = [run for run in outcome.runs if run.done]
     reused = sum(run.reused for run in done)
     line = f"{len(done)} of {Count(len(outcome.runs)):run|runs} read"
@@ -122,7 +122,7 @@ def where_to_look(outcome: Outcome) -> list[str]:
 
 
 def _run_notices(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
-    """Return notices on a few runs, e.g. on trimmed strokes, running-in and wear."""
+    """Return the notices on trimmed strokes, running-in, wear and stick-slip, if runs are few."""
     few = done if len(done) <= _HANDFUL else ()
     return _alike(
         (run.name, f": {'left out: ' * (notice.where == STROKE_ENDS)}{notice.message}")
@@ -147,7 +147,7 @@ def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 
 
 def _is_uncalibrated(outcome: Outcome) -> bool:
-    """Whether the uncertainty of a curve excludes the calibration of its instrument."""
+    """Whether any curve has an uncertainty that excludes the calibration of the instrument."""
     entries = [outcome.store.get("curve", c.name, CurveRecord) for c in outcome.curves if c.done]
     return any("statistical only" in entry.record.uncertainty_says for entry in entries if entry)
 
@@ -172,7 +172,7 @@ def _decisions(outcome: Outcome) -> list[str]:
 
 
 def _alike(reasons: Iterable[tuple[str, str]]) -> list[str]:
-    """Return names with their reasons, and once each reason that several have in common."""
+    """Return a line for each reason, which names all runs that have it."""
     named: dict[str, list[str]] = {}
     for name, reason in reasons:
         named.setdefault(reason, []).append(name)
@@ -186,20 +186,20 @@ def _reasons_of_run(run: RunOutcome, outcome: Outcome) -> str:
 
 
 def _reasons(rows: Iterable[Mapping[str, Any]], status: str) -> str:
-    """Return the checks with this status, and their messages."""
+    """Return the names and messages of the checks with a given status, as the end of a line."""
     mine = [row for row in rows if row["status"] == status and not row.get("decision")]
     texts = [f"{row['check'].replace('_', ' ')}: {_of_scan(row)}{row['message']}" for row in mine]
     return "".join(f": {' '.join(text.split())}" for text in ["; ".join(texts)] if text)
 
 
 def _of_scan(row: Mapping[str, Any]) -> str:
-    """Return the scan of a check, if its message does not begin with it."""
+    """Return the name of the scan that a check refers to; "" if the message begins with it."""
     scan = row.get("scan", "")
     return f"{scan} " if scan and not row["message"].startswith(scan) else ""
 
 
 def _computed(outcome: Outcome) -> str:
-    """Return the computed results of surfaces as a list in words."""
+    """Return in words what was computed for the surfaces, e.g. spectrum and contact."""
     words = {"psd": "spectrum", "contact": "contact", "adhesion": "adhesion"}
     parts = {part for surface in outcome.surfaces for part in surface.parts}
     return ", ".join(word for part, word in words.items() if part in parts) or (
@@ -208,7 +208,7 @@ def _computed(outcome: Outcome) -> str:
 
 
 def _roughness(outcome: Outcome) -> list[str]:
-    """Return the roughness of surfaces in the standard form, with its cut-off."""
+    """Return lines on the ISO roughness of the surfaces, with the cut-off."""
     rows = []
     for surface in outcome.surfaces:
         entry = outcome.store.get("surface", surface.name, SurfaceRecord)
@@ -218,7 +218,7 @@ def _roughness(outcome: Outcome) -> list[str]:
 
 
 def _left_out(outcome: Outcome) -> list[str]:
-    """Return a line on effects that the models leave out; the page has their sizes."""
+    """Return a line on the effects that the first model omits; the page estimates their sizes."""
     for model in outcome.models:
         entry = outcome.store.get("model", model.name, ModelRecord)
         if entry and entry.record.rows and entry.record.rows.not_in_model:
@@ -229,9 +229,9 @@ def _left_out(outcome: Outcome) -> list[str]:
 
 
 def _doubts(surface: SurfaceOutcome) -> list[str]:
-    """Return suspect findings on a surface other than those of the checks of its scans.
+    """Return the suspect findings on a surface, except those from the checks of its scans.
 
-    A doubtful form is included, because the roughness depends on it.
+    The check of the form is included, because the roughness depends on the form.
     """
     return [
         finding.message
@@ -253,7 +253,7 @@ def outside_lines(campaign: Campaign) -> list[str]:
 
 
 def foreign_lines(outcome: Outcome) -> list[str]:
-    """Return lines that name damaged results and foreign files."""
+    """Return lines that name results changed by other programs, and files that are no results."""
     lines = []
     if outcome.damaged:
         lines.append(
@@ -289,7 +289,7 @@ def failure_lines(outcome: Outcome) -> list[str]:
 
 
 def from_here(path: Path) -> str:
-    """Return a path relative to the current folder, if it is inside."""
+    """Return a path as text, relative to the current folder if it is inside."""
     try:
         return str(path.resolve().relative_to(Path.cwd()))
     except ValueError:

@@ -1,4 +1,4 @@
-"""Verification of results: unchanged since written, and reproducible from the raw files."""
+"""Verification that results are unchanged, and reproducible from the raw files."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from tribolab.core.errors import ConfigError, OutputError, ReadError, brief
 from tribolab.reading.netcdf.netcdf import read_groups
 from tribolab.version import __version__
 
-# entries that may differ: time and place of the computation
+# entries of report.json that differ between equal analyses, e.g. date and duration
 _PASSING = frozenset({"made_at", "versions", "seconds", "history", "reused"})
-# figure files, which are not drawn again
+# lists of figure files, because a verification draws no figures
 _DRAWN = frozenset({"figures", "surface_figures", "model_figures", "sliding_figures"})
 
 
@@ -36,12 +36,12 @@ def problems(results: Path) -> list[str]:
 
 
 def mend(results: Path) -> None:
-    """Restore a lost .tribolab-results file.
+    """Write the lost .tribolab-results file of a results folder again.
 
     Raises
     ------
     ConfigError
-        If it is not a results folder, or the marker is not lost.
+        If it is not a results folder, or the file is not lost.
     """
     if not (results / CATALOGUE).is_file():
         raise ConfigError(f"{results}: not a results folder: it has no {CATALOGUE}")
@@ -63,7 +63,7 @@ def recomputed(
     progress: Progress | None = None,
     trust: bool = False,
 ) -> list[str]:
-    """Compute results again from the raw files, and return the numbers that differ.
+    """Compute results again from the raw files, and return the files and places that differ.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _differing(there: Path, made: Path, name: str) -> list[str]:
 
 
 def _differing_entries(one: object, other: object, at: str = "") -> Iterator[str]:
-    """Yield the names of entries in which two reports differ."""
+    """Yield the path of each entry of report.json in which two analyses differ."""
     if isinstance(one, dict) and isinstance(other, dict):
         for key in sorted({*one, *other} - _PASSING - _DRAWN):
             yield from _differing_entries(

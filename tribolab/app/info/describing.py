@@ -1,4 +1,4 @@
-"""Description of unknown instruments: with questions in a terminal, else from the files only."""
+"""Description of unknown instruments, from their files and from answers in a terminal."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tribolab.reading.unknown.proposal.show import print_draft, print_next, prin
 def describe(
     files: Sequence[Path], target: Path | None, name: str | None, *, force: bool, ask: bool | None
 ) -> None:
-    """Describe the instrument of some files, try the description, and print the next steps.
+    """Write a description of the instrument of some files, test it, and print the next steps.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def describe(
 
 
 def describe_by_questions(files: Sequence[Path], *, keep: bool) -> Path | None:
-    """Ask in a terminal for information missing in unknown files, and write a description.
+    """Ask the user for what the files of an unknown instrument do not state, and describe it.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def describe_by_questions(files: Sequence[Path], *, keep: bool) -> Path | None:
     Returns
     -------
     Path or None
-        Path of the description; None without a terminal, without open questions, or if not wanted.
+        Path of the description; None without a terminal or open questions, or if it is discarded.
     """
     if not is_terminal() or not files or not all(map(_leaves_open, files)):
         return None

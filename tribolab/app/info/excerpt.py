@@ -1,4 +1,4 @@
-"""Excerpt of a long text file: its start, its end and samples between, in whole lines."""
+"""Excerpt of a long text file: whole lines from its start, its end and places in between."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import NamedTuple
 from tribolab.reading.text.first_bytes import wide_encoding
 
 _MAX_WHOLE = 1 << 26  # bytes of the longest file that is read as a whole
-_START, _PIECE, _PIECES = 1 << 18, 1 << 11, 512  # bytes of the start and of a sample; samples
-_MAX_LINE = 1 << 16  # bytes
+_START, _PIECE, _PIECES = 1 << 18, 1 << 11, 512  # bytes of start and of a piece; pieces after it
+_MAX_LINE = 1 << 16  # bytes of the longest line
 
 
 class Excerpt(NamedTuple):
-    """Copy of parts of a file, the number of lines that it has and that the whole may have."""
+    """Excerpt of a file, its number of lines, and the estimated number of the whole file."""
 
     file: Path
     lines: int
@@ -33,7 +33,7 @@ def write_excerpt(path: Path, folder: Path) -> Excerpt | None:
     Returns
     -------
     Excerpt or None
-        The excerpt; None of a short file, and of one without lines of single-byte characters.
+        None if the file is short, binary, in a two-byte encoding, or has very long lines.
     """
     if not path.is_file() or (size := path.stat().st_size) <= _MAX_WHOLE:
         return None

@@ -1,4 +1,4 @@
-"""Output of `tribolab info` on a raw file: a run, a scan, or results."""
+"""Output of `tribolab info` on a raw file: a run, a scan, a modulus, or a tester's results."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _INSTALL = "install it: pip install 'tribolab[formats]'"
 
 
 def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
-    """Return how a raw file is interpreted: a run, a scan, or a roughness tester's results.
+    """Return lines on how a raw file is read: as a run, a scan, a modulus or tester's results.
 
     Raises
     ------
@@ -67,14 +67,14 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
 
 
 def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> list[str]:
-    """Return how a long run is interpreted, from an excerpt; empty if that does not suffice."""
+    """Return lines on how a long run is read, from an excerpt; empty if that is not enough."""
     try:
         kind = kind_of(path, instrument)
         drafted = kind == "unknown" and is_run_file(path)
         if not drafted and (kind != "run" or has_companion(path, instrument)):
             return []
         log = read_log(path, instrument, part.file)
-    except ReadError:  # the whole file gives the error, or is not cut without one
+    except ReadError:  # perhaps caused by the gaps of the excerpt: the whole file is read instead
         return []
     facts = file_facts(log, path, instrument)
     whole = facts["left_out"] or facts["are_points"] or facts["steps"]
@@ -95,7 +95,7 @@ def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> 
 
 
 def _modulus_lines(path: Path) -> list[str]:
-    """Return lines on a table of storage and loss modulus, and how to use it in a campaign."""
+    """Return lines on a table of storage and loss modulus, and on its use in a campaign file."""
     name = f'name it as modulus_file = "{shown(path.name)}" in [contact] of a campaign file'
     try:
         table = read_modulus_table(path)
@@ -115,7 +115,7 @@ def _modulus_lines(path: Path) -> list[str]:
 
 @dataclass(frozen=True)
 class Described:
-    """File, its description in lines, and the reason why it could not be read."""
+    """A raw file with its description in lines, or with the reason why it could not be read."""
 
     file: Path
     lines: tuple[str, ...] = ()
@@ -123,7 +123,7 @@ class Described:
 
 
 class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]):
-    """Stage of `tribolab info`: files and their interpretation."""
+    """Work of `tribolab info`, file by file: how each raw file is read."""
 
     name = "files"
 
@@ -132,16 +132,16 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
         self._instrument = instrument
 
     def plan(self) -> list[tuple[Path, str | Path | None]]:
-        """Return the files with their instrument."""
+        """Return a task for each file: the file and its instrument."""
         return [(file, self._instrument) for file in self._files]
 
     @staticmethod
     def work(task: tuple[Path, str | Path | None]) -> Described:
-        """Describe one file."""
+        """Return the description of one file."""
         return Described(task[0], tuple(file_lines(*task)))
 
     def failed(self, task: tuple[Path, str | Path | None], error: BaseException) -> Described:
-        """Return why a file could not be described; raise for a wrong instrument."""
+        """Return the reason why a file could not be read; raise if the instrument is wrong."""
         if isinstance(error, TribolabError) and not isinstance(error, ReadError):
             raise error
         read = isinstance(error, ReadError)  # other files are still described
@@ -152,12 +152,12 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
     def keep(
         self, task: tuple[Path, str | Path | None], place: int, record: Described
     ) -> Described:
-        """Return the record; nothing is stored."""
+        """Return the description of a file unchanged, because nothing is stored."""
         return record
 
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
-    """Read the traces of a scan; a file that is no scan gives the error of a run."""
+    """Return the traces of a scan by file; if a file is no scan, raise the error of a run."""
     # imported late for a quick start
     from tribolab.reading.scan_files import read_traces
     from tribolab.reading.scans.formats.profilometers import MissingUnitError
@@ -169,7 +169,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
         if _is_explained(path, error):
             raise
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
-            # a map or profile that lacks units only
+            # only the units of a map or profile are missing
             bare = isinstance(error, MissingUnitError) and not is_run_file(path, by_name=False)
             draft = draft_of(path)
             named = draft is not None and draft.kind == "table"
@@ -193,7 +193,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
 
 
 def _is_explained(path: Path, error: ReadError) -> bool:
-    """Whether an error explains completely what is wrong with a scan."""
+    """Whether the error of a scan is the one to show, so that the file is not tried as a run."""
     # imported late for a quick start
     from tribolab.reading.scans.extent import RefusedScanError
     from tribolab.reading.scans.formats.undescribed import is_own_text
@@ -202,7 +202,7 @@ def _is_explained(path: Path, error: ReadError) -> bool:
     if isinstance(error, RefusedError):
         return True
     if isinstance(error, GuessedError | RefusedScanError):
-        return isinstance(error, RefusedScanError)  # other errors are explained again
+        return isinstance(error, RefusedScanError)  # a guess is also tried as a run
     try:
         check_regular(path)
         if is_own_text(path):
@@ -268,6 +268,6 @@ def _results_lines(path: Path) -> list[str]:
 
 
 def _title_of(name: str, instrument: str | Path | None) -> str:
-    """Return a dialect's name with its title; the bare name if another library read the file."""
+    """Return the instrument's name and title; the name alone if another library read the file."""
     known = instrument or (name if name in known_dialects() else None)
     return f"{name} ({load_dialect(known).title})" if known else name

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
-_MAX_TEXT = 300  # characters of a file's own text
+_MAX_TEXT = 300  # most characters shown of a text from the file
 _SHOWN_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 _UNIT_END = re.compile(r"_(m_s|m_per_s|s|m|N|Hz|K|Pa|rad|kg)$")
 _UNITS = {"m_s": "m/s", "m_per_s": "m/s"}
@@ -23,9 +23,9 @@ _WORDS = {
     "time_origin_s": "first time",
     "time_source": "time from",
 }
-# attributes that say nothing beyond the lines above
+# values that need no line of their own
 _USUAL = {"speed_from": ("column", "none"), "time_origin_s": (0.0,), "time_source": ("recorded",)}
-_ROUNDING = 1e-6  # share of a step: positions with smaller deviations are evenly spaced
+_ROUNDING = 1e-6  # points are evenly spaced if they deviate by less than this share of a pitch
 
 
 def metadata_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
@@ -33,7 +33,7 @@ def metadata_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
     others = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _SHOWN_ABOVE}
     if float(others.get("x_unevenness", 1.0)) < _ROUNDING:
         del others["x_unevenness"]
-    if "to_keep_it" in others:  # to be typed where `info` was
+    if "to_keep_it" in others:  # a command that works in the current folder
         # imported late for a quick start
         from tribolab.reading.unknown.proposal.questions import how_to_keep
 
@@ -46,7 +46,7 @@ def metadata_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
 
 
 def _unit_of(key: str, value: object) -> str:
-    """Return the unit of a number, from the end of its key.
+    """Return the unit at the end of an attribute's key, if the attribute is a number; else "".
 
     Examples
     --------
@@ -59,7 +59,7 @@ def _unit_of(key: str, value: object) -> str:
 
 
 def _key_words(key: str) -> str:
-    """Return the key of an attribute in words.
+    """Return the key of an attribute in words, without the unit.
 
     Examples
     --------

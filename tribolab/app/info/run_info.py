@@ -28,7 +28,7 @@ _WAYS = {
 
 
 def run_lines(facts: FileFacts) -> list[str]:
-    """Return how the raw file of a run is interpreted.
+    """Return lines on how the raw file of a run is read: sampling, columns and metadata.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def run_lines(facts: FileFacts) -> list[str]:
 
 
 def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """Return which inputs a run with a force lacks for friction over sliding speed.
+    """Return lines on the inputs that are missing for a friction coefficient against speed.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
     names = set(facts["columns"])
     forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
     if not names & forces and names & _OF_MOTION:
-        return []  # a motion log needs nothing else
+        return []  # a motion log has no force, because the force log has it
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
     if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
@@ -92,7 +92,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
 
 
 def doubt_lines(signals: Mapping[str, np.ndarray]) -> list[str]:
-    """Return a line on forces or coefficients that are physically implausible."""
+    """Return a line on friction that is physically implausible; empty if it is plausible."""
     doubt = ""
     if "friction_coefficient" in signals and "friction_force" not in signals:
         doubt = doubt_about_coefficient(signals["friction_coefficient"])
@@ -102,7 +102,7 @@ def doubt_lines(signals: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def companion_lines(facts: CompanionFacts) -> list[str]:
-    """Return whether a run's second log was found, and how its clock was matched.
+    """Return lines on the second log of a run: whether it was found, and its clock shift.
 
     Parameters
     ----------

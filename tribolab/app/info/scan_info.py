@@ -1,4 +1,4 @@
-"""Output of `tribolab info` on the roughness of a scan, and on settings stated in its file."""
+"""Output of `tribolab info` on a scan: its roughness, and the settings stated in its file."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tribolab.core.wording import many
 if TYPE_CHECKING:
     import xarray as xr
 
-_LARGEST_MAP = 20_000_000  # points of the largest map from which a form is removed at once
-_LARGEST = 2_000_000  # points of the largest scan whose roughness is computed at once
-_OTHER_FORM = 0.02  # relative change of roughness above which the choice of form matters
+_LARGEST_MAP = 20_000_000  # most points of a map whose areal roughness is computed here
+_LARGEST = 2_000_000  # most points of a scan whose profile roughness is computed here
+_OTHER_FORM = 0.02  # roughness with only the tilt removed is shown if it differs by more
 
 
 def stated_lines(attrs: Mapping[str, Any]) -> list[str]:
-    """Return the settings of the trace that the file states."""
+    """Return a line with the settings of the instrument that the file states; empty if none."""
     stated = [
         f"{name} {scale * float(attrs[key]):.6g}{unit}"
         for key, name, scale, unit in (
@@ -33,7 +33,7 @@ def stated_lines(attrs: Mapping[str, Any]) -> list[str]:
 
 
 def areal_lines(scan: xr.Dataset) -> list[str]:
-    """Return the areal roughness of a map."""
+    """Return a line on the areal roughness Sq and Sa of a map; empty if it cannot be computed."""
     # imported late for a quick start
     from tribolab.surface.areal_roughness import areal_roughness
     from tribolab.surface.form import remove_form
@@ -58,7 +58,7 @@ def areal_lines(scan: xr.Dataset) -> list[str]:
 
 
 def roughness_lines(scan: xr.Dataset) -> list[str]:
-    """Return the roughness of a scan, with the usual cut-off and without one."""
+    """Return lines on the profile roughness of a scan, with the standard cut-off and without."""
     # imported late for a quick start
     import numpy as np
 

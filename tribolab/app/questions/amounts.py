@@ -1,4 +1,4 @@
-"""Load, speed and sampling rate of a draft: in the file, or as answered."""
+"""Load, speed and sampling rate in the draft of a dialect: from the file, or from answers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.reading.unknown.proposal.draft import Draft
 
 
 def set_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
-    """Return a draft with length and frequency of the strokes."""
+    """Return a draft with the length and frequency of its strokes; raise if one is missing."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -30,7 +30,7 @@ def set_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
 
 
 def answered_amount(draft: Draft, amount: str) -> str:
-    """Return the load, speed or rate that was answered; "" if none was."""
+    """Return the load, speed or rate that the user has answered; "" without an answer."""
     understood = draft.understood
     if understood is None:
         return ""
@@ -40,7 +40,7 @@ def answered_amount(draft: Draft, amount: str) -> str:
 
 
 def states_amount(draft: Draft, amount: str) -> bool:
-    """Whether the file states the load as one number, with certainty."""
+    """Whether `amount` is the load, and the file clearly states it as one number."""
     layout, understood = draft.layout, draft.understood
     if amount != "load" or layout is None or understood is None or understood.load:
         return False
@@ -51,7 +51,7 @@ def states_amount(draft: Draft, amount: str) -> bool:
 
 
 def confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
-    """Return a draft in which a line of the file states the load or speed, as confirmed."""
+    """Return a draft that takes the load or speed from a line of the file, as the user agreed."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -61,7 +61,7 @@ def confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
 
 
 def candidate_amount(draft: Draft, amount: str) -> tuple[str, Amount | None]:
-    """Return the lines of the file that may state an amount, and that amount."""
+    """Return the lines of the file that may state a missing load or speed, and its value."""
     layout, understood = draft.layout, draft.understood
     lack = {"load": "normal_force", "speed": "sliding_velocity"}.get(amount, "")
     if layout is None or understood is None or not lack:
@@ -74,7 +74,7 @@ def candidate_amount(draft: Draft, amount: str) -> tuple[str, Amount | None]:
 
 
 def set_amount(draft: Draft, amount: str, text: str) -> Draft:
-    """Return a draft with an answered load, speed or rate."""
+    """Return a draft with the load, speed or rate that the user has typed."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft

@@ -1,4 +1,4 @@
-"""Questions of `tribolab info FILE --write`: meaning of columns, and missing quantities."""
+"""Questions of `tribolab info FILE --write`, in order: columns, motion, pitch of heights."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _SCAN = {"x": "the position along the profile", "height": "the height"}
 
 
 def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
-    """Ask for the quantity and unit of columns, and for quantities without a column.
+    """Ask which quantity and unit each column has, and for quantities that have no column.
 
     Parameters
     ----------
@@ -45,23 +45,23 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     ask
         Function that asks.
     say
-        Function that prints why an answer is invalid, before it is asked again.
+        Function that prints why an answer is invalid, before the question is repeated.
 
     Returns
     -------
     Draft
-        The draft with the answers, which are no longer guesses.
+        The draft with the answers in place of its guesses.
     """
     if draft.layout is None or draft.understood is None:
         return draft
-    alone = len(draft.understood.columns) == 1  # one column of numbers cannot be a run
+    alone = len(draft.understood.columns) == 1  # a run has at least two columns
     if draft.kind == "table" and (alone or draft.unsaid):
         return _ask_for_pitch(draft, ask, say)
     if draft.kind == "scan":
         return _ask_about_scan(draft, ask, say)
     question = "which column is the time? (its number; or the rate of the rows, such as 100 Hz; "
     question += f"{NONE})"
-    if draft.understood and not draft.understood.rate_pattern:  # else the file states it
+    if draft.understood and not draft.understood.rate_pattern:  # else the file states the rate
         draft = ask_for(draft, ("time",), question, ask, say, amount="rate")
     question = "which column is the friction force (or its torque, or a friction coefficient)?"
     draft = ask_for(draft, FRICTION, f"{question} (its number; {NONE} for none)", ask, say)
@@ -82,7 +82,7 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
 
 
 def _ask_about_scan(draft: Draft, ask: Ask, say: Say) -> Draft:
-    """Ask for the columns of a scan that are not known, and at once for the units of the others."""
+    """Ask which columns of a scan are position and height if unknown, then for guessed units."""
     for name, words in _SCAN.items():
         found = column_of_any(draft, (name,))
         known = found is not None and not (found.guessed or found.fill_in)
@@ -113,7 +113,7 @@ def _ask_about_scan(draft: Draft, ask: Ask, say: Say) -> Draft:
 
 
 def _has_speed_from_settings(draft: Draft) -> bool:
-    """Whether stated settings give the speed, without a guessed column."""
+    """Whether the settings stated in the file give the speed, and no column does."""
     if (
         draft.layout is None
         or draft.understood is None
@@ -125,7 +125,7 @@ def _has_speed_from_settings(draft: Draft) -> bool:
 
 
 def _ask_for_motion(draft: Draft, ask: Ask, say: Say) -> Draft:
-    """Ask for the settings that give the speed, if only these are missing."""
+    """Ask for the settings from which the speed follows: crank, radius, and zero of the signal."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -158,7 +158,9 @@ def _ask_for_lengths(
         likely = amount_of(value)
         guess = YES[0] if likely and guess == NONE else guess
         radius = _ask_amount(question, "radius", "m", guess, ask, say, likely)
-        if radius and value is not None and radius == likely:  # the value in the file
+        if (
+            radius and value is not None and radius == likely
+        ):  # confirmed: the value that the file states
             agreed = (*understood.agreed, ("radius", value.text))
             understood = understood._replace(agreed=agreed)
         else:
@@ -185,7 +187,7 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
 
 
 def _height_unit(understood: Understood, pitch: str, ask: Ask, say: Say) -> str:
-    """Return the unit of heights: from the file, from plausible numbers, or as typed."""
+    """Return the unit of the heights: stated in the file, the only plausible one, or typed."""
     column = understood.columns[0]
     unit = column.read_unit
     if unit is None and pitch:
@@ -201,7 +203,7 @@ def _height_unit(understood: Understood, pitch: str, ask: Ask, say: Say) -> str:
 def _ask_amount(
     question: str, name: str, si_unit: str, guess: str, ask: Ask, say: Say, likely: str = ""
 ) -> str:
-    """Ask until a valid number with a unit is typed, or "yes" to `likely`; "" if unknown."""
+    """Return a typed number with its unit, or `likely` after "yes"; "" if it is unknown."""
     while True:
         agree = f"yes: {likely}; " if likely else ""
         typed = ask(f"{question} ({agree}{NONE}: not known)", guess).strip()

@@ -47,19 +47,19 @@ Say = Callable[[str], None]
 
 
 class Ask(Protocol):
-    """Function that asks a question and returns the answer, or the default."""
+    """Function that asks a question and returns the answer; by default the suggested one."""
 
     def __call__(self, question: str, default: str) -> str:
-        """Ask a question."""
+        """Ask a question and return the answer."""
 
 
 def ask_for(
     draft: Draft, names: Sequence[str], question: str, ask: Ask, say: Say, amount: str = ""
 ) -> Draft:
-    """Ask which column contains one of several quantities, or for an amount instead, if open."""
+    """Ask which column has one of these quantities (or for its fixed amount), unless known."""
     found = column_of_any(draft, names)
     if found is not None and found.quantity in names and not (found.guessed or found.fill_in):
-        return draft  # nothing is open
+        return draft  # already known
     earlier = answered_amount(draft, amount)
     if found is None and not earlier and states_amount(draft, amount):
         return draft
@@ -67,7 +67,7 @@ def ask_for(
     likely = amount_of(value)
     if lines:
         question += f"; is it in {lines}?" + (f" (yes: {likely})" if likely else "")
-    # which column it is can be seen above: only its unit is open
+    # the column is known, and only its unit is missing
     typed = str(found.place) if found and found.fill_in and not found.guessed else ""
     while True:
         usual = YES[0] if likely else NONE
@@ -101,7 +101,7 @@ def ask_for(
 
 
 def column_of_any(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
-    """Return the column of the first quantity that has one."""
+    """Return the column of the first of these quantities that has a column; else None."""
     columns = draft.understood.columns if draft.understood else ()
     for name in names:
         by_name = {TORQUE: torque_of, ANGLE: angle_of}.get(name)
@@ -112,7 +112,7 @@ def column_of_any(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
 
 
 def _remove_quantities(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
-    """Return a draft without columns for any of the quantities except one."""
+    """Return a draft in which no column has any of these quantities, except `but`."""
     for name in names:
         if name != but and (name not in QUANTITIES or column_of(draft, name) is not None):
             draft = corrected(draft, name, None)
@@ -120,7 +120,7 @@ def _remove_quantities(draft: Draft, names: Sequence[str], but: str = "") -> Dra
 
 
 def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
-    """Return a draft in which several columns add up to the load, e.g. 4 + 5."""
+    """Return a draft in which the load is the sum of several columns, typed e.g. as 4 + 5."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -146,7 +146,7 @@ def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
 
 
 def _column(draft: Draft, typed: str) -> DraftColumn:
-    """Return the column with the typed number or name."""
+    """Return the column with the typed number or name; raise if there is none."""
     columns = draft.understood.columns if draft.understood else ()
     for column in columns:
         if typed.strip() in (str(column.place), column.label, column.name):
@@ -157,7 +157,7 @@ def _column(draft: Draft, typed: str) -> DraftColumn:
 def _ask_unit(
     column: DraftColumn, names: Sequence[str], known: DraftColumn | None, ask: Ask
 ) -> Worth:
-    """Ask for the unit of a column, unless the file states a suitable unit."""
+    """Return the quantity and unit of a column; ask for them unless the file states them."""
     name = next((name for name in names if known is not None and known.quantity == name), "")
     asked = (name,) if name else tuple(names)
     stated = column.file_unit or ""
@@ -189,14 +189,14 @@ def _fits(unit: str, name: str) -> bool:
 
 
 def unit_guess(column: DraftColumn, name: str) -> str:
-    """Return the drafted unit of a column if it fits the quantity, else a common unit of it."""
+    """Return the unit to suggest: that of the draft if it suits the quantity, else a common one."""
     if column.unit and fits(column.unit, name):
         return column.unit
     return other_units("height" if name == "height" else quantity(name).unit)[0]
 
 
 def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
-    """Ask for the sign of a force whose values all have the unexpected sign."""
+    """Ask whether a pressing force is negative, if a normal force has negative values."""
     if name != "normal_force" or draft.understood is None:
         return 1
     values = draft.understood.numbers[:, column.place - 1]
@@ -212,7 +212,7 @@ def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
 
 
 def _ask_zero(draft: Draft, column: DraftColumn, unit: Worth, ask: Ask, say: Say) -> Draft:
-    """Ask for the reading of a force column without contact, if it has a calibration factor."""
+    """Ask for the zero (reading without contact) of a force column with a calibration factor."""
     layout, understood = draft.layout, draft.understood
     forces = {*FRICTION, *LOAD}
     if unit.scale == 1 or unit.name not in forces or layout is None or understood is None:

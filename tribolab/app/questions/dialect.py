@@ -1,4 +1,4 @@
-"""Test of a dialect written by `tribolab info FILE --write` on its own files."""
+"""Test of a new dialect on the files from which `tribolab info FILE --write` made it."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
-    """Read files with a dialect and return the friction of their segments, or what is missing.
+    """Read files with a new dialect, and return a line on the results of each or on the error.
 
     Parameters
     ----------
     files
-        Files from which it was drafted.
+        Files from which the dialect was drafted.
     dialect
         The TOML file.
     kind
@@ -76,7 +76,7 @@ def _try_run(file: Path, dialect: Path) -> str:
 
 
 def _coefficients(friction: xr.Dataset) -> str:
-    """Return friction in words: the mean of segments at one speed, else of each segment."""
+    """Return text on the friction coefficients: their range, mean at one speed, and U95."""
     # imported late for a quick start
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.records.wording import error_text
@@ -103,7 +103,7 @@ def _coefficients(friction: xr.Dataset) -> str:
 
 
 def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
-    """Whether the direction of sliding is unknown; a signed set-point gives it."""
+    """Whether neither a measured speed nor the sign of the set speed gives the direction."""
     unknown = bool(segments["sliding_speed"].isnull().any())
     by_set_speed = SegmentAttributes.from_attrs(segments.attrs).velocity_source == "set speed"
     signed = "set_speed" in run and bool((run["set_speed"] < 0).any())

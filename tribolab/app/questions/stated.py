@@ -43,7 +43,7 @@ class Stated(NamedTuple):
     def of(
         cls, load: str | None, radius: str | None, speed: str | None, rate: str | None
     ) -> Stated:
-        """Return the stated amounts after checking the options.
+        """Return the amounts stated by options, each as a number with a unit.
 
         Raises
         ------
@@ -71,7 +71,7 @@ class Stated(NamedTuple):
         return all(value is None for value in self)
 
     def run_lines(self, *, described: bool) -> list[str]:
-        """Return the lines of a [[run]]; without the speed if a description states it."""
+        """Return the lines of a [[run]] with load and speed; no speed if the description has it."""
         values = {"normal_force": self.load, "sliding_speed": None if described else self.speed}
         return [f'{key} = "{value}"' for key, value in values.items() if value is not None]
 
@@ -80,7 +80,7 @@ _UNITS = {"load": "N", "radius": "m", "speed": "m/s", "rate": "Hz"}
 
 
 def _spaced(text: str) -> str:
-    """Return a number with a unit, separated by a blank.
+    """Return a number and its unit with a space between them.
 
     >>> _spaced("20N"), _spaced("1.5e3 mm/s")
     ('20 N', '1.5e3 mm/s')
@@ -96,21 +96,21 @@ def _spaced(text: str) -> str:
 
 
 def describe_with(stated: Stated, files: Sequence[Path], folder: Path | None = None) -> str | None:
-    """Write a description of an unknown instrument that includes the stated amounts.
+    """Write a description of an unknown instrument with the amounts from the command line.
 
     Parameters
     ----------
     stated
         Amounts from the command line.
     files
-        Raw files; the first with unknown instrument is described.
+        Raw files; the instrument of the first unknown one is described.
     folder
         Folder for the description ``instrument_NAME.toml``; by default a temporary folder.
 
     Returns
     -------
     str or None
-        The file; None if all instruments are known, or nothing is stated.
+        The description; None if all instruments are known, or no amount is stated.
     """
     if stated.is_empty:
         return None

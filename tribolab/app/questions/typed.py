@@ -26,7 +26,7 @@ _AMOUNTS = {"load": ("N",), "speed": ("m/s",), "rate": ("Hz", "s")}
 
 
 def as_amount(typed: str, amount: str) -> str:
-    """Return typed text as a number with a unit; "" if it names a column."""
+    """Return a typed load, speed or rate as a number with a unit; "" if a column was typed."""
     if DECIMAL.match(typed):
         raise ReadError(f"{typed} has no unit: type it with one, such as {_EXAMPLE[amount]}")
     if NUMBER.match(typed) or not typed[0].isdigit():
@@ -60,7 +60,7 @@ def amount_typed(typed: str, name: str, si_unit: str) -> str:
 
 
 def as_strokes(typed: str) -> tuple[str, str] | None:
-    """Return typed length and frequency of strokes; None if both are missing.
+    """Return the length and frequency of strokes in a typed text; None if it states neither.
 
     >>> as_strokes("stroke 6 mm, 1.5 Hz"), as_strokes("2 Hz"), as_strokes("6 mm/min")
     (('6 mm', '1.5 Hz'), ('', '2 Hz'), None)
@@ -75,7 +75,7 @@ def as_strokes(typed: str) -> tuple[str, str] | None:
 
 
 def turning(typed: str) -> str:
-    """Return the speed [m/s] from typed rotation and radius or diameter; "" if incomplete.
+    """Return the speed [m/s] from a typed rotation speed and radius (or diameter), else "".
 
     >>> turning("8 rpm at 22.5 mm radius"), turning("8 mm at 2 Hz")
     ('0.0188496 m/s', '')
@@ -89,7 +89,7 @@ def turning(typed: str) -> str:
 
 
 def turns_alone(rate: str) -> bool:
-    """Whether the unit of a rate means turns, e.g. rpm or U/min; Hz is ambiguous.
+    """Whether a rate has a unit of rotation, such as rpm; Hz may also count strokes.
 
     >>> turns_alone("8 rpm"), turns_alone("2 Hz")
     (True, False)

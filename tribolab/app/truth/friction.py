@@ -14,7 +14,7 @@ from tribolab.records.runs.run_record import RunRecord
 from tribolab.rig import read_truth
 
 _HALF = 0.5
-# columns next to the true ones
+# measured columns that the table shows next to the true ones
 _COLUMNS = [
     *("start_s", "stop_s", "direction", "sliding_speed_m_s"),
     *("friction_coefficient", "friction_coefficient_sem"),
@@ -32,8 +32,8 @@ class TruthComparison:
     true, found, missed, extra
         Numbers of segments.
     within_1, within_3
-        Share of the found segments whose true friction coefficient is within one and three standard
-        errors of the measured one; NaN without any.
+        Share of the found segments whose measured friction coefficient is within one (three)
+        standard errors of the true one; NaN if no segment was found.
     """
 
     table: pd.DataFrame
@@ -46,7 +46,7 @@ class TruthComparison:
 
 
 def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
-    """Compare a campaign's results with the truth.
+    """Compare the segments and friction of a simulated campaign with the truth.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
     Raises
     ------
     AnalysisError
-        If there is no truth for a run.
+        If the simulated campaign does not contain the true values of a run.
     """
     truth = read_truth(folder)
     for run in outcome.runs:
@@ -117,7 +117,7 @@ def compare_run(
     cover = np.where(same, overlap, -np.inf) / (stop - start)[:, None]
     best = cover.argmax(axis=1) if size else np.zeros(len(true), dtype=int)
     hit = cover.max(axis=1, initial=-np.inf) > _HALF
-    # a segment that covers two true ones counts for one; the other is missed
+    # a measured segment that covers two true ones is matched with one; the other is missed
     order = np.argsort(-cover.max(axis=1, initial=-np.inf), kind="stable")
     taken: dict[int, int] = {}
     for row in order[hit[order]]:
@@ -140,7 +140,7 @@ def compare_run(
 
 
 def summary(table: pd.DataFrame) -> TruthComparison:
-    """Count found, missed and extra segments, and the share with the truth within errors."""
+    """Return the numbers of found, missed and extra segments, and the coverage of the errors."""
     status = table["status"]
     errors = table["error_in_standard_errors"].abs()[status == "found"].dropna()
     return TruthComparison(

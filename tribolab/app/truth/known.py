@@ -1,4 +1,4 @@
-"""Results of a simulated campaign next to its truth."""
+"""Comparison of all results of a simulated campaign with its true values, and truth.csv."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TRUTH = "truth.csv"  # next to truth/
 
 @dataclass(frozen=True)
 class DemoComparison:
-    """Results of a simulated campaign next to its truth.
+    """Segments, roughness and shear stresses of a simulated campaign next to the true values.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class DemoComparison:
 
 
 def compare_with_known(outcome: Outcome, folder: Path) -> DemoComparison:
-    """Compare a simulated campaign's results with its truth.
+    """Compare segments, roughness and shear stresses of a simulated campaign with the truth.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Lines of the demo: agreement with the truth and with the paper."""
+"""Terminal lines on the agreement of results with the simulated truth or with the paper."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 
 
 def _not_described(results: Path) -> str:
-    """Return, in brackets, the number of curves that the model does not describe, by surface."""
+    """Return text in brackets on the number of curves per surface that the model does not fit."""
     # imported late for a quick start
     from tribolab.records.models.model_words import is_described
     from tribolab.report import tables

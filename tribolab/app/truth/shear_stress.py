@@ -1,4 +1,4 @@
-"""Comparison of fitted shear stresses with those of the virtual rig."""
+"""Comparison of fitted shear stresses with the true ones of the virtual rig."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _COLUMNS = [
 
 
 def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
-    """Compare the fitted shear stresses of a simulated campaign with the rig's.
+    """Compare the fitted shear stresses of a simulated campaign with the true ones.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Comparison of roughness and contact with the surfaces from which scans were simulated."""
+"""Comparison of roughness and contact area with those of the simulated surfaces."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
 
 
 def _with_bounds(column: str) -> list[str]:
-    """Return the names of a column and of its bounds; the unit remains at the end."""
+    """Return the names of a column, its lower and its upper bound, each with the unit last."""
     name, unit = (column.removesuffix("_m"), "_m") if column.endswith("_m") else (column, "")
     return [f"{name}{end}{unit}" for end in ("", "_low", "_high")]
 
