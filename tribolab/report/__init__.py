@@ -1,1 +1,1 @@
-"""What a campaign leaves behind: the page report.html, report.json and the tables."""
+"""Written results of a campaign: the page report.html, report.json, tables and figures."""

@@ -1,4 +1,4 @@
-"""All tables of a campaign: their content, files and leading columns."""
+"""CSV tables of a campaign: which are written, and with which rows and columns."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _PART = (
 _SEGMENT = (*tables.CURVE_LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
 
 
-# all tables that may be written, with descriptions
+# name of each table and description of its content
 TABLES = {
     "friction": "friction coefficient of every segment, with its errors",
     "stribeck": "measured friction over sliding speed",
@@ -54,8 +54,7 @@ TABLES = {
 }
 
 
-# columns of a segment that friction.csv omits: parts of the error included in U95, and numbers that
-# follow from others
+# numbers of a segment that friction.csv omits: components of U95, and what follows from others
 _NOT_IN_FRICTION = frozenset(
     (
         *("friction_coefficient_u", "friction_coefficient_dof", "friction_coefficient_beyond_dof"),
@@ -84,7 +83,7 @@ _SLIP = (
 
 
 def friction_row(row: Row) -> Row:
-    """Return the row of a segment in `friction.csv`; with half loop only without a coefficient.
+    """Return the columns of a segment for friction.csv; half_loop_N only if µ is unknown.
 
     Parameters
     ----------
@@ -98,7 +97,7 @@ def friction_row(row: Row) -> Row:
 
 
 class _LongTable(NamedTuple):
-    """Table that is never in memory as a whole; without rows and columns it is not written."""
+    """Table that is written row by row, to save memory; not written without rows and columns."""
 
     file: str
     rows: Callable[[], Iterator[Row]]
@@ -113,8 +112,8 @@ def write_tables(
 ) -> None:
     """Write all tables of a campaign except those of findings and checks.
 
-    Tables of friction require runs, those of surfaces scans, and those of contact and adhesion a
-    defined contact.
+    Friction tables are written if there are runs, roughness if there are scans, and tables of
+    contact and adhesion if the campaign file defines a contact.
 
     Parameters
     ----------
@@ -123,7 +122,7 @@ def write_tables(
     curves
         Curves to show.
     surfaces, models
-        Their records.
+        Records of the surfaces, and rows of the models.
     """
     folder = Path(outcome.folder) / "tables"
     for long in _long_tables(outcome, curves):
@@ -151,7 +150,7 @@ def write_tables(
 
 
 def _sources(outcome: Outcome) -> pd.DataFrame:
-    """Return the raw files with their checksums, run, and duration left out."""
+    """Return the table of raw files: checksum, run, and why and how long parts were left out."""
     by_file: dict[str, tuple[str, str]] = {}
     for entry in outcome.store.all("run", RunRecord):
         run = entry.record.outcome
@@ -166,10 +165,9 @@ def _sources(outcome: Outcome) -> pd.DataFrame:
 
 
 def write_checks(outcome: Outcome, findings: Sequence[Notice], folder: Path) -> None:
-    """Write the table of findings, most severe first, and that of all checks of all runs.
+    """Write checks.csv: the findings, most severe first, then every check of every run.
 
-    A finding of a check appears as the row of that check; omitted parts of runs are in the table of
-    sources.
+    A finding that repeats a check is not listed twice. Omitted parts of runs are in sources.csv.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Checksums of the code that makes the report, to detect that it must be made again."""
+"""Checksums of the code behind a report, which is written again if the code has changed."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _WHOLE = (*_PYTHON, ".j2", ".js", ".css", ".LICENSE")
 
 @cache
 def code_of_figures() -> str:
-    """Return the checksum of version and code that affect figures."""
+    """Return a checksum of the code that draws figures, and of its version."""
     return _checksum(_PYTHON)
 
 
 @cache
 def code_of_page() -> str:
-    """Return the checksum of everything that affects the report, e.g. code and templates."""
+    """Return a checksum of all that shapes the report: code, version, templates and scripts."""
     return _checksum(_WHOLE)
 
 
 def _checksum(kinds: tuple[str, ...]) -> str:
-    """Return the checksum of our files of these kinds, independent of the installation folder."""
+    """Return a checksum of the package's files with these endings, wherever it is installed."""
     files = (file for room in _ROOMS for file in (_PACKAGE / room).rglob("*"))
     chosen = sorted((str(f.relative_to(_PACKAGE)), f) for f in files if f.suffix in kinds)
     return sha256_of([__version__, [[name, sha256_of_file(file)] for name, file in chosen]])

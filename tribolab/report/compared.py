@@ -1,4 +1,4 @@
-"""Segments of all runs of a results folder in one dataset, for comparison."""
+"""Segments of all runs of a results folder in one dataset, to compare runs."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import xarray as xr
 
 
 def joined_runs(results: Mapping[str, xr.Dataset], facts: Mapping[str, Any]) -> xr.Dataset:
-    """Join the segments of several runs in one dataset.
+    """Return the segments of several runs as one dataset (run, segment).
 
     Parameters
     ----------
     results
-        Results over (segment), by name of the run; variables over other dims are left out.
+        Results (segment) by name of the run; variables with other dims are left out.
     facts
         ``surface``, ``medium``, ``quality`` and ``normal_force`` [N] of each run, by name.
 
     Returns
     -------
     xarray.Dataset
-        Variables over (run, segment). If a run has fewer segments or lacks a variable, numbers are
+        Variables (run, segment). If a run has fewer segments or lacks a variable, numbers are
         NaN and texts empty.
 
     Examples
@@ -64,7 +64,7 @@ def joined_runs(results: Mapping[str, xr.Dataset], facts: Mapping[str, Any]) -> 
 
 
 def _rows(given: Sequence[xr.DataArray | None], longest: int, first: xr.DataArray) -> np.ndarray:
-    """Return values of a variable (run, segment), padded for runs without them."""
+    """Return one variable of all runs (run, segment), padded with NaN, or "" for texts."""
     text = first.dtype.kind in "OUS"
     whole = all(values is not None and values.size == longest for values in given)
     dtype = object if text else first.dtype if whole else float

@@ -1,4 +1,4 @@
-"""Optional formats for the tables of a results folder: one workbook, or Parquet."""
+"""Tables of a results folder in other formats: an Excel workbook, or Parquet."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from tribolab.report.tables import read_csv
 from tribolab.units.quantities import QUANTITIES
 
 WORKBOOK = "tables.xlsx"
-_MAX_ROWS = 1_048_574  # most rows of a sheet, without names and units
+_MAX_ROWS = 1_048_574  # most rows of a sheet in Excel, minus those of names and units
 _ENDINGS = {column(name)[len(name) + 1 :]: known.unit for name, known in QUANTITIES.items()}
 _ENDINGS = {ending: unit for ending, unit in _ENDINGS.items() if ending}
 
 
 def unit_of(name: str) -> str:
-    """Return the unit of a table's column; "" if it has none.
+    """Return the unit at the end of a column's name; "" for a text or pure number.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Numbers in plain notation, rounded to the intended values."""
+"""Numbers, speeds and lists as text for readers: without exponents, with unit prefixes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def plain_speed(speed: float | None) -> str:
     >>> plain_speed(0.999e-6), plain_speed(9.994e-5), plain_speed(4.64e-6), plain_speed(9.996e-4)
     ('1 µm/s', '100 µm/s', '4.6 µm/s', '1 mm/s')
 
-    Strokes with the same set-point give the same text:
+    Measured speeds that belong to one set-point give the same text:
 
     >>> plain_speed(2.14998e-3), plain_speed(2.15e-3), plain_speed(2.15104e-3)
     ('2.2 mm/s', '2.2 mm/s', '2.2 mm/s')
@@ -50,7 +50,7 @@ _SPEED = re.compile(r"(?<![\d.])(\d+(?:\.\d+)?) (nm/s|µm/s|mm/s|m/s)\b")
 
 
 def plain_speeds(text: str) -> str:
-    """Return a text with its sliding speeds in plain notation.
+    """Return a text in which each speed has two digits and a suitable unit prefix.
 
     Examples
     --------
@@ -66,7 +66,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def without_exponents(text: str) -> str:
-    """Return a text with its numbers in plain instead of exponential notation.
+    """Return a text in which numbers such as 1e-9 are written without an exponent.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def without_exponents(text: str) -> str:
 
 
 def listed(words: Sequence[str]) -> str:
-    """Return words as a list with "and".
+    """Return several words as one text, with commas and "and".
 
     Examples
     --------

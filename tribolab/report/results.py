@@ -1,4 +1,4 @@
-"""Write the report of a campaign: figures, tables, report.json and the page, from its records."""
+"""Writing of a report: figures, tables, report.json and the page, from stored records."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def write_report(
     figures: Wanted = "all",
     pdf: bool = False,
 ) -> None:
-    """Write all results except the data files.
+    """Write the report of a campaign: report.html, report.json, figures and tables.
 
     Write ``report.html`` (one page that opens offline), ``report.json`` (the same numbers),
     ``figures/*.svg`` and ``tables/*`` from the records in the outcome's store.
@@ -86,7 +86,7 @@ def write_report(
 
     Notes
     -----
-    A figure that cannot be drawn gives a finding of severity "error"; the others are drawn.
+    A figure that cannot be drawn gives a finding with severity "error"; the others are drawn.
     """
     folder, store = Path(outcome.folder), outcome.store
     for name in ("figures", "tables"):
@@ -117,7 +117,7 @@ def write_report(
     rows = model_rows_of(models)
     subjects = figure_subjects(outcome, shown, list(rows.values()), modes, fitted)
     making = begun_page_figures(subjects, store, executor)
-    # while workers draw
+    # in the meantime, workers make the figures
     write_tables(outcome, shown, surfaces, rows)
     prepare_page()
     records, undrawn = making()
@@ -167,7 +167,7 @@ def _figures(
     wanted: Wanted,
     pdf: bool,
 ) -> list[FigureTask]:
-    """Return the tasks of the figures to be drawn into files."""
+    """Return a task for each figure that is drawn into files."""
     if wanted == "none":
         return []
     tasks = described_tasks([spec for spec in curves if spec.series], store, pdf=pdf)
@@ -179,7 +179,7 @@ def _figures(
 
 
 def _run_documents(outcome: Outcome) -> Iterator[Json]:
-    """Yield the runs as in report.json."""
+    """Yield the entry of each run in report.json."""
     for entry in outcome.store.all("run", RunRecord):
         yield run_document(entry.record)
 
@@ -187,7 +187,7 @@ def _run_documents(outcome: Outcome) -> Iterator[Json]:
 def _summarise_runs(
     outcome: Outcome,
 ) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[FigureSpec]]:
-    """Return short entries and notices of all runs, their points, and figures along runs."""
+    """Return for all runs: short entries, notices, points by name, and figures along the runs."""
     briefs: list[Json] = []
     notices: list[Notice] = []
     points: dict[str, list[RunPoint]] = {}
@@ -212,7 +212,7 @@ def _summarise_runs(
 def _part_notices(
     outcome: Outcome, surfaces: Sequence[SurfaceRecord], models: Sequence[ModelRecord]
 ) -> list[Notice]:
-    """Return the notices on the campaign and its parts."""
+    """Return notices on the campaign, its media, failed runs, surfaces and models."""
     note = outcome.campaign.campaign.note
     findings = [Notice("note", "", "campaign", note)] if note else []
     findings += [
@@ -244,7 +244,7 @@ def _failure(run: RunOutcome) -> Notice:
 def shown_curves(
     curves: Sequence[CurveRecord], quantities: Mapping[str, str | None]
 ) -> tuple[list[CurveRecord], list[Notice]]:
-    """Return the curves that can be shown, and notices on missing curves or parts."""
+    """Return the curves with a friction coefficient, and a notice on each other curve."""
     shown, missing = [], []
     for curve in curves:
         outcome, reason = curve.outcome, curve.outcome.reason
@@ -257,7 +257,7 @@ def shown_curves(
                 shown.append(curve)
                 continue
             reason = "no segment has both a speed and a friction coefficient"
-        # without a load no friction coefficient is expected
+        # a missing curve is suspect only if some run has a load, and hence a friction coefficient
         known = [quantities.get(name) for name in outcome.run_names]
         severity = "suspect" if "friction_coefficient" in known else "note"
         severity = "error" if outcome.crash else severity

@@ -1,4 +1,4 @@
-"""Access to results of earlier runs from a notebook: tables and data, read on demand."""
+"""Results folder as a mapping in a notebook: its tables and data, read when needed."""
 
 from __future__ import annotations
 
@@ -22,10 +22,9 @@ _OVER_SEGMENTS = ("friction", "segments", "stick_slip")
 
 
 class Results(Mapping[str, "pd.DataFrame"]):
-    """Tables of a results folder by name, and its data, read on demand.
+    """Results folder: its tables by name, and its data, all read when first needed.
 
-    `data` returns a group of one run, curve, surface or model; `runs` and `curves` return all at
-    once.
+    `data` returns data of one run, curve, surface or model; `runs` and `curves` those of all.
 
     Parameters
     ----------
@@ -38,7 +37,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         self._files = {path.stem: path for path in sorted((folder / "tables").glob("*.csv"))}
 
     def __getitem__(self, name: str) -> pd.DataFrame:
-        """Return a table, with the original text of cells escaped for spreadsheets."""
+        """Return a table; cells escaped for spreadsheets have their original text again."""
         if name not in self._files:
             raise ReadError(
                 f"{self.folder}: there is no table '{shown(name)}'{nearest(name, self._files)}"
@@ -58,7 +57,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         return len(self._files)
 
     def _repr_html_(self) -> str:
-        """Return the names of the tables, with their columns, as HTML."""
+        """Return the tables with their columns as HTML, for display in a notebook."""
         columns = []
         for name, path in self._files.items():
             with path.open(encoding="utf-8") as lines:
@@ -66,7 +65,9 @@ class Results(Mapping[str, "pd.DataFrame"]):
         return html_list(f"{self.folder}: {many(len(self), 'table')}", columns)
 
     def data(self, name: str, group: str | None = None) -> xr.Dataset:
-        """Return a group of a run, curve, surface or model, e.g. ``data("x_01", "friction")``.
+        """Return one group from the data file of a run, curve, surface or model.
+
+        For example, ``data("x_01", "friction")`` returns the friction of the run x_01.
 
         Raises
         ------
@@ -103,8 +104,8 @@ class Results(Mapping[str, "pd.DataFrame"]):
         Returns
         -------
         xarray.Dataset
-            Over (run, segment), with the coordinates ``surface``, ``medium``, ``quality`` and
-            ``nominal_normal_force`` [N] over (run), e.g. ``runs.groupby("surface").mean("run")`` or
+            Variables (run, segment), with the coordinates ``surface``, ``medium``, ``quality`` and
+            ``nominal_normal_force`` [N] (run), e.g. ``runs.groupby("surface").mean("run")`` or
             ``runs.where(runs.medium == "dry", drop=True)``. Missing segments are NaN. Failed runs
             are left out; segments rejected by a person are included, and ``runs.where(runs.rejected
             != 1)`` removes them. Signals over time are not included: use `data` for those of one

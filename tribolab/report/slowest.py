@@ -1,4 +1,4 @@
-"""Segments for a close look at stick-slip: lowest load of each contact, slowest strokes."""
+"""Segments in which stick-slip shows best: the slowest strokes at the lowest load."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from tribolab.campaign.store.outcome import Outcome
 from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.runs.run_record import RunRecord
 
-_SLOWEST = 2  # speeds of each condition
-_APART = 1.2  # smallest ratio of distinct speeds
+_SLOWEST = 2  # number of speeds per condition
+_APART = 1.2  # ratio of speeds above which they count as different
 
 
 class Slow(NamedTuple):
@@ -22,7 +22,7 @@ class Slow(NamedTuple):
 
 
 def lowest_loads(curves: Iterable[CurveOutcome]) -> list[CurveOutcome]:
-    """Return the curve at the lowest load of each surface and medium, with most stick-slip."""
+    """Return the curve at the lowest load, where stick-slip is likely, per surface and medium."""
     best: dict[tuple[str, str], CurveOutcome] = {}
     for curve in curves:
         key = curve.surface, curve.medium
@@ -33,9 +33,9 @@ def lowest_loads(curves: Iterable[CurveOutcome]) -> list[CurveOutcome]:
 
 
 def slow_segments(curve: CurveOutcome, outcome: Outcome) -> Slow | None:
-    """Return the first run of a curve, and its forward segments at the slowest speeds.
+    """Return the first run of a curve with forward strokes, and its slowest such segments.
 
-    Segments rejected by a person are left out; None if no segment is left.
+    Manually rejected segments are left out; None if no segment remains.
     """
     for name in curve.run_names:
         entry = outcome.store.get("run", name, RunRecord)

@@ -1,4 +1,4 @@
-"""Formats of tables."""
+"""Formats of the tables in a results folder, next to CSV."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ FORMATS = ("csv", "xlsx", "parquet")
 
 
 def table_format(name: str) -> str:
-    """Return the name of a format; raise an error that lists the formats if it is unknown."""
+    """Return the name of a table format unchanged; raise if there is no such format."""
     if name not in FORMATS:
         raise ConfigError(
             f"--tables {shown(name)}: there is no such format{nearest(name, FORMATS)}",

@@ -1,4 +1,4 @@
-"""Tables of the results: a row per segment, point, source or finding; units in the names."""
+"""Reading and writing of CSV tables, with texts escaped so that spreadsheets compute nothing."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ SEVERITIES = ("fail", "error", "suspect", "note")
 CURVE_LABELS = ["surface", "medium", "nominal_normal_force_N"]
 
 
-# characters that start a formula in spreadsheets, and our own escape sign, so that reading exactly
-# reverses writing
+# characters that start a formula in spreadsheets; also the escape sign itself, so that a text that
+# starts with it survives writing and reading
 _ACTIVE = tuple("=+-@\t\r\n'＝＋－＠")
 _SIGN = "'"
 
 
 def uncomputed(cell: Any) -> Any:
-    r"""Escape text that a spreadsheet would compute as a formula with a leading sign.
+    r"""Return a cell with a leading ' if a spreadsheet would compute its text as a formula.
 
     Numbers, also those written as text, remain unchanged. Control characters are escaped.
 
@@ -50,14 +50,14 @@ def uncomputed(cell: Any) -> Any:
 
 
 def as_it_was(cell: Any) -> Any:
-    """Undo `uncomputed`."""
+    """Return the original text of a cell that `uncomputed` has escaped."""
     return cell[1:] if isinstance(cell, str) and cell.startswith(_SIGN) else cell
 
 
 def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
-    """Write a table as CSV: UTF-8, LF, floats with all or the given number of digits.
+    """Write a table as CSV in UTF-8, with all digits of floats or the given number of digits.
 
-    Text that a spreadsheet would compute is escaped (`uncomputed`); `read_csv` restores it.
+    Text that a spreadsheet would compute is escaped by `uncomputed`; `read_csv` restores it.
     """
     with path.open("w", encoding="utf-8", newline="") as file:
         _append(table, file, header=True, digits=digits)
@@ -97,7 +97,7 @@ def _texts(values: Sequence[Any], dtype: str) -> list[Any]:
 
 
 def _types(rows: Iterable[Row]) -> dict[str, str]:
-    """Return the type of each column, in order of first appearance."""
+    """Return the numpy type of each column, in order of their first appearance in the rows."""
     kinds: dict[str, set[type]] = {}
     seen: Counter[str] = Counter()
     count = 0
@@ -151,7 +151,7 @@ def read_csv(path: Path) -> pd.DataFrame:
 
 
 def _mapped(table: pd.DataFrame, how: Callable[[Any], Any]) -> pd.DataFrame:
-    """Map the texts of a table and the names of its columns."""
+    """Return a table with a function applied to its texts and column names."""
     done = table.copy(deep=False)
     for place, dtype in enumerate(table.dtypes):
         if pd.api.types.is_object_dtype(dtype) or pd.api.types.is_string_dtype(dtype):

@@ -1,1 +1,1 @@
-"""Types and content of report.json."""
+"""Content of report.json, and the types from which its schema is made."""

@@ -1,4 +1,4 @@
-"""Effect of a person's decisions on the curves."""
+"""Effect of manual decisions (rejected runs or segments) on the measured curves."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"
 
 
 def curve_notices(curve: CurveRecord) -> list[Notice]:
-    """Return a note on how much decisions changed a curve; empty without decisions."""
+    """Return a note on how much manual decisions changed a curve; empty if unchanged."""
     if not curve.points_as_found:
         return []
     pairs, lost = _pairs(curve)
@@ -33,7 +33,7 @@ def curve_notices(curve: CurveRecord) -> list[Notice]:
 
 
 def _pairs(curve: CurveRecord) -> tuple[list[tuple[float, float, float]], int]:
-    """Return (speed, friction with, without decisions), and the number of speeds that were lost."""
+    """Return speed and µ with and without decisions, and the number of speeds without µ now."""
     now = [(v, mu) for row in curve.points if (v := row[_SPEED]) and (mu := row[_MU]) is not None]
     speeds = np.array([speed for speed, _ in now], dtype=float)
     pairs, lost = [], 0

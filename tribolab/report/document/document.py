@@ -1,4 +1,4 @@
-"""Content of the report as plain data, for report.json and the page."""
+"""Report of a campaign as plain data: verdict, findings and records, for report.json and page."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
 def labels(what: RunOutcome | CurveOutcome) -> Row:
-    """Return surface, medium and nominal load, as every table and record names them."""
+    """Return surface, medium and nominal load under the column names of all tables."""
     return {
         "surface": what.surface,
         "medium": what.medium,
@@ -57,7 +57,7 @@ def labels(what: RunOutcome | CurveOutcome) -> Row:
 
 
 def report_document(head: ReportHead) -> Json:
-    """Return the head of the report as plain data for JSON."""
+    """Return the content of report.json without runs as dictionaries, lists and numbers."""
     return plain_value(_HEAD.dump_python(head, by_alias=True))
 
 
@@ -73,7 +73,7 @@ def report_head(
     joints: Iterable[JointRecord],
     figures: Mapping[str, Sequence[FigureRecord]],
 ) -> ReportHead:
-    """Return the report without its runs.
+    """Return the content of report.json except the runs.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def report_head(
     findings
         All findings, most severe first.
     curves, surfaces, modes, models, joints
-        Their records for the report.
+        Records from `tribolab.report.document.parts`, and joint fits.
     figures
         Figures by section.
     """
@@ -125,7 +125,7 @@ def report_head(
 
 
 def _scan_verdict(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -> CampaignVerdict:
-    """Return the verdict on a campaign that measured surfaces only."""
+    """Return the verdict on a campaign with scans but without runs."""
     scanned = [surface for surface in surfaces if surface.files]
     done = sum(surface.done for surface in scanned)
     suspect = sum(surface.quality == "suspect" for surface in scanned if surface.done)
@@ -150,7 +150,7 @@ def verdict(
     uncertain: int = 0,
     means: Sequence[float] = (),
 ) -> CampaignVerdict:
-    """Return the result of the campaign in one sentence, with its numbers.
+    """Return the verdict on a campaign: its status, a sentence, and the numbers in it.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def verdict(
 
 
 def state_of(verdict: Mapping[str, Any]) -> str:
-    """Return the status word with which page and terminal begin.
+    """Return the verdict in one word, with which page and terminal begin: OK, SUSPECT, CHECK, FAIL.
 
     Examples
     --------
@@ -262,7 +262,7 @@ def _bounds(runs: Iterable[Mapping[str, Any]]) -> list[float]:
 
 
 def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
-    """Return the steady friction of the runs if all of them run in; else []."""
+    """Return the steady friction of each run; empty unless all run in and become steady."""
     settled = [run.get("running_in", ()) for run in runs]
     if not all(len(rows) == 1 and rows[0]["verdict"] != NONE for rows in settled):
         return []
@@ -271,7 +271,7 @@ def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
 
 
 def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
-    """Return the measured range; for several instruments one range each."""
+    """Return text on the measured range; for two or three instruments, one range for each."""
     apart: dict[str, list[Mapping[str, Any]]] = {}
     for run in runs:
         if run["value_min"] is not None:
@@ -285,7 +285,7 @@ def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
 
 
 def brief_run(run: Mapping[str, Any]) -> Json:
-    """Return the short entries of a run, for the table of runs."""
+    """Return the entry of a run in report.json without its long lists, for the table of runs."""
     brief = {key: value for key, value in run.items() if key not in _LONG_LISTS}
     objections = [row for row in run["checks"] if row["status"] in ("suspect", "fail", "error")]
     return brief | {"checks": objections}
@@ -320,7 +320,7 @@ def versions() -> dict[str, str]:
 
 
 def write_json(document: Mapping[str, Any], runs: Iterable[Mapping[str, Any]], path: Path) -> None:
-    """Write the report as strict JSON: UTF-8, no NaN, one run per line."""
+    """Write report.json in UTF-8, without NaN, and with one run per line."""
 
     def text(value: Any, indent: int | None = 1) -> str:
         return json.dumps(value, ensure_ascii=False, indent=indent, allow_nan=False)

@@ -1,4 +1,4 @@
-"""Tables of the models: shear stresses, curves and sensitivities."""
+"""Tables of the mixed-lubrication models: fitted shear stress, computed curve, sensitivity."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import ModelOutcome, Row
 
 _STATISTICAL = "statistical only: the spectrum's error is not in it"
-MODEL_COLUMNS = {  # columns that depend on several models or on the surface, and their meanings
+MODEL_COLUMNS = {  # results that need other models or the surface, and their meanings
     "area_dry_over_wet": "real contact area, dry divided by in the medium",
     "judgement": "where measurement and model differ, in words",
     "spectrum_error_low": "relative change of the shear stress due to the uncertain spectrum, down",
@@ -46,7 +46,7 @@ _CURVE = [
     *("minimum_separation_m", "central_separation_m", "contact_area_ratio", "solid_load_share"),
     *("residual", "load_balance", "flux_variation", "iterations", "cells"),
 ]
-SENSITIVE = {  # columns of a variation, and their meanings
+SENSITIVE = {  # columns of the sensitivity to one input, and their meanings
     "variation": "",
     "low": "",
     "high": "",
@@ -62,21 +62,21 @@ SENSITIVE = {  # columns of a variation, and their meanings
 
 @dataclass(frozen=True, kw_only=True)
 class ModelRow(ModelRows):
-    """Model with rows that can be completed by results from several models."""
+    """Model of one curve, with rows for the tables; `fit` is completed from other models."""
 
     model: ModelOutcome
     fit: Json | None
 
     @property
     def labels(self) -> Row:
-        """Leading columns of every table."""
+        """Curve, surface, medium and load: the first columns of every table of models."""
         model = self.model
         values = model.curve, model.surface, model.medium, model.normal_force
         return dict(zip(("curve", *MODEL_LABELS), values, strict=True))
 
 
 def model_rows_of(records: Iterable[ModelRecord]) -> dict[str, ModelRow]:
-    """Return the completed rows of all models with results, by name."""
+    """Return the rows of all models that have results, by name, completed by `complete`."""
     rows = {}
     for record in records:
         if record.rows is None:
@@ -91,7 +91,7 @@ def model_rows_of(records: Iterable[ModelRecord]) -> dict[str, ModelRow]:
 
 
 def complete(rows: Sequence[ModelRow]) -> None:
-    """Add results from several models: error due to the spectrum, and ratios between surfaces.
+    """Add to each fit the error due to the spectrum, and the ratio to an earlier surface.
 
     The error due to the spectrum is known at the load at which the model's uncertainty was
     computed. It scales the whole plateau, so it is also used at the other loads of the surface.
@@ -140,14 +140,14 @@ def complete(rows: Sequence[ModelRow]) -> None:
 
 
 def _add_spectrum(fit: Json, relative: float) -> None:
-    """Add the relative error due to the spectrum to those of the shear stresses."""
+    """Combine the relative error due to the spectrum with the errors of both shear stresses."""
     for name in ("shear_stress_total_error_Pa", "corrected_shear_stress_error_Pa"):
         value = "corrected_shear_stress_Pa" if "corrected" in name else "shear_stress_Pa"
         fit[name] = float(np.hypot(fit[name], relative * fit[value]))
 
 
 def _is_known(fit: Json) -> bool:
-    """Whether a shear stress exceeds twice its error; else a ratio to it is meaningless."""
+    """Whether a corrected shear stress exceeds twice its error, so that a ratio makes sense."""
     return fit["corrected_shear_stress_Pa"] > 2 * fit["corrected_shear_stress_error_Pa"]
 
 
@@ -156,12 +156,12 @@ def _kind(model: ModelOutcome) -> tuple[str, str]:
 
 
 def shear_stress_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
-    """Return the fitted shear stress of each curve; report.json has complete fits."""
+    """Return the table of fitted shear stresses, a row per curve."""
     fits = [row.labels | row.fit for row in rows if row.fit is not None]
     return pd.DataFrame(fits, columns=SHEAR_STRESS)
 
 
 def model_curve_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
-    """Return all model curves, a row per speed."""
+    """Return the table of computed curves, a row per model and speed."""
     points = [model.labels | row for model in rows for row in model.curve]
     return pd.DataFrame(points, columns=_CURVE)

@@ -1,4 +1,4 @@
-"""Records of runs, curves, surfaces, models and sliding modes for report.json."""
+"""Entries of report.json for runs, curves, surfaces, models and sliding modes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _RUN = TypeAdapter(ReportedRun)
 
 
 def run_document(record: RunRecord) -> Json:
-    """Return a run for report.json as plain data."""
+    """Return the entry of a run in report.json as plain data."""
     run = record.outcome
     reported = ReportedRun(
         **_part(run),
@@ -48,7 +48,7 @@ def run_document(record: RunRecord) -> Json:
 
 
 def reported_curve(curve: CurveRecord) -> ReportedCurve:
-    """Return a curve for report.json."""
+    """Return the entry of a measured curve in report.json."""
     outcome = curve.outcome
     return ReportedCurve(
         outcome.name,
@@ -66,7 +66,7 @@ def reported_curve(curve: CurveRecord) -> ReportedCurve:
 
 
 def reported_surface(surface: SurfaceOutcome, rows: SurfaceRows | None) -> ReportedSurface:
-    """Return a surface for report.json."""
+    """Return the entry of a surface in report.json."""
     return ReportedSurface(
         **_part(surface),
         quality=surface.quality,
@@ -82,7 +82,7 @@ def reported_surface(surface: SurfaceOutcome, rows: SurfaceRows | None) -> Repor
 
 
 def reported_model(model: ModelOutcome, rows: ModelRow | None) -> ReportedModel:
-    """Return a model for report.json."""
+    """Return the entry of a mixed-lubrication model in report.json."""
     return ReportedModel(
         **_part(model),
         curve=model.curve,
@@ -98,7 +98,7 @@ def reported_model(model: ModelOutcome, rows: ModelRow | None) -> ReportedModel:
 
 
 def reported_mode(mode: ModeRecord, curve: CurveRecord) -> ReportedMode:
-    """Return the sliding mode of a curve for report.json."""
+    """Return the entry of the sliding mode of a curve in report.json."""
     outcome = curve.outcome
     shown = {name: value for name, value in vars(mode).items() if name != "moves"}
     return ReportedMode(

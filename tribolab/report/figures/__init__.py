@@ -1,1 +1,1 @@
-"""Figures for publication: drawn by workers, and reused while their data are unchanged."""
+"""Figure files for publication: which are drawn, and reuse while their data are unchanged."""

@@ -1,4 +1,4 @@
-"""Choice of the figures that a report draws; fast to import, as every command needs it."""
+"""Option that selects the figure files of a report; a small module, for a fast start."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _WANTED: dict[str, Wanted] = {"all": "all", "curves": "curves", "none": "none"}
 
 
 def wanted(word: str) -> Wanted:
-    """Return the choice of figures for an option.
+    """Return the value of the option `figures` after checking it.
 
     Raises
     ------

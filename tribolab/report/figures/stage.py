@@ -1,4 +1,4 @@
-"""Stage of the figure files: drawn by workers, reused if their data are the same."""
+"""Drawing of the figure files in worker processes; unchanged figures are reused."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from tribolab.report.code import code_of_figures
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Matplotlib's fonts are not thread-safe.
+# held while drawing, because matplotlib's fonts are not thread-safe
 DRAWING = threading.Lock()
 SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
 _MAX_LABELS = 12  # most labels in the legend of one figure
-_KEYS = {"surfaces": 1, "contact": 1, "model": 2, "sliding": 3}  # key by section of the page
+_KEYS = {"surfaces": 1, "contact": 1, "model": 2, "sliding": 3}  # index of SECTIONS by page section
 
 
 @dataclass(frozen=True)
 class DrawnFigures:
-    """Records of the figures of one subject in the results folder."""
+    """Figure files of one subject, e.g. a surface and medium, in the results folder."""
 
     figures: tuple[FigureRecord, ...]
 
 
 @dataclass(frozen=True)
 class FigureTask:
-    """Figures of one subject to draw; `make` takes the results folder and can be pickled."""
+    """Task to draw the figures of one subject; `make` describes them and can be pickled."""
 
     name: str
     make: Callable[[Path], Sequence[FigureSpec]]
@@ -49,14 +49,14 @@ class FigureTask:
 
 
 class Figures(Recorded[FigureTask, DrawnFigures, Notice]):
-    """Stage of the figures for publication."""
+    """Work on the figure files: a task for each subject."""
 
     name = "figures"
     kind = "figure"
     record = DrawnFigures
 
     def taken(self, task: FigureTask, record: DrawnFigures) -> DrawnFigures | None:
-        """Reuse the pictures, their numbers, and their PDFs if wanted."""
+        """Return the record if all its files can be reused: figures, numbers, and wanted PDFs."""
         files = [name for one in record.figures for name in (one.file, one.data) if name]
         files += [_pdf(one.file) for one in record.figures if task.pdf]
         return record if all(map(self._store.link_file, files)) else None
@@ -68,7 +68,7 @@ class Figures(Recorded[FigureTask, DrawnFigures, Notice]):
         return DrawnFigures(tuple(draw_figure(spec, task.folder, pdf=task.pdf) for spec in specs))
 
     def failed(self, task: FigureTask, error: BaseException) -> Notice:
-        """Return the reason why figures could not be drawn."""
+        """Return a finding with the reason why figures could not be drawn."""
         return Notice("error", "", f"figures of {task.name}", explain(error)[0])
 
 
@@ -81,7 +81,7 @@ def figure_task(
     *,
     pdf: bool = False,
 ) -> FigureTask:
-    """Return a task with the checksum of everything that affects its figures.
+    """Return a drawing task, with a checksum of all that affects its figures.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def _given(spec: FigureSpec, folder: Path) -> list[FigureSpec]:
 
 
 def draw_figure(spec: FigureSpec, folder: Path, *, pdf: bool = False) -> FigureRecord:
-    """Write a figure as SVG with a table of its numbers, and return its record.
+    """Draw a described figure into files: SVG and a table of its numbers; return its record.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def draw_figure(spec: FigureSpec, folder: Path, *, pdf: bool = False) -> FigureR
 
 
 def write_figure(figure: Figure, folder: Path, file: str, *, pdf: bool = False) -> str:
-    """Write a figure and a table of its numbers; return the table's file, "" without one.
+    """Write a figure as SVG and a table of its numbers; return the file of the table or "".
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def write_figure(figure: Figure, folder: Path, file: str, *, pdf: bool = False) 
 
 
 def file_name(spec: FigureSpec) -> str:
-    """Return the base name of a figure's files; curves are named after surface and medium.
+    """Return the name of a figure's files without suffix, e.g. with surface and medium.
 
     Examples
     --------
@@ -179,9 +179,9 @@ def file_name(spec: FigureSpec) -> str:
 
 
 def on_paper(spec: FigureSpec) -> list[FigureSpec]:
-    """Return a figure with all its loads labelled and shaded; the page shows one at a time.
+    """Return a figure for paper with all loads, labelled and shaded (the page shows one load).
 
-    If the legend would be too long, return a figure for each load.
+    If the legend would be too long, return one figure for each load.
     """
     loads = sorted({one.load for one in spec.series if one.load is not None})
     if not spec.one_load or len(loads) < 2:

@@ -1,1 +1,1 @@
-"""Report page: its sections, key numbers and texts."""
+"""The page report.html: its sections, key numbers and texts."""

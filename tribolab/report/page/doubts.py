@@ -1,4 +1,4 @@
-"""Doubts about a campaign, each with its remedy, most severe first."""
+"""Doubts about a campaign for the first screen of the page, each with its remedy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
 
 _GRAVE = ("error", "fail", "suspect")
-_MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in the doubt about runs left out
+_MAX_NAMED, _MAX_LISTED = 2, 6  # most runs with a doubt of their own; most runs in a joint doubt
 _REPEATS = "repeats"  # name of the check
 _COMPARE = "Compare its trace with those of its repeats."
 _COMPARE_ALL = (
@@ -24,9 +24,9 @@ _UNCALIBRATED = "statistical only"
 
 
 class Doubt(NamedTuple):
-    """Doubt and its remedy; `level` is "fail", "suspect" or "note".
+    """A doubt and its remedy (`cure`); `level` is "fail", "suspect" or "note".
 
-    `runs` names the runs concerned, `link` is the address of their details.
+    `runs` names the runs concerned; `link` leads to their details on the page.
     """
 
     level: str
@@ -37,7 +37,7 @@ class Doubt(NamedTuple):
 
 
 def doubts(document: Mapping[str, Any]) -> list[Doubt]:
-    """Return the doubts about a campaign: runs left out, odd repeats, all other findings.
+    """Return the doubts about a campaign: excluded runs, odd repeats, other findings, notes.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def doubts(document: Mapping[str, Any]) -> list[Doubt]:
 
 
 def _odd_runs(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
-    """Yield the runs that contradict their repeats."""
+    """Yield doubts about runs that contradict their repeats."""
     odd = [
         (run["name"], row["message"])
         for run in runs
@@ -70,7 +70,7 @@ def _odd_runs(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
 
 
 def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
-    """Yield the runs that no result includes, each with the most severe reason."""
+    """Yield doubts that name the runs excluded from all results, with the main reason."""
     bad = [run for run in runs if is_bad(run)]
     for run in bad if len(bad) <= _MAX_NAMED else ():
         yield Doubt("fail", run["name"], f"left out, {why(run)}", "", f"run {run['name']}")
@@ -83,7 +83,7 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
 
 
 def _uncertain_means(document: Mapping[str, Any]) -> Iterable[Doubt]:
-    """Yield the conditions whose repeats scatter so much that their mean is uncertain."""
+    """Yield a doubt about conditions whose repeats scatter too much for a certain mean."""
     levels = {run["name"]: _level(run) for run in document["runs"]}
     odd = {run["name"] for run in document["runs"] if is_odd(run)}
     wide = [
@@ -102,7 +102,7 @@ def _uncertain_means(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 
 def _level(run: Mapping[str, Any]) -> float | None:
-    """Return the steady friction of a run at one speed, else its first highlight."""
+    """Return the steady friction of a run at one speed, else the first number it highlights."""
     steady = [row["steady_friction_coefficient"] for row in run.get("running_in", ())]
     highlights = [found["value"] for found in run.get("highlights", ())]
     return next(
@@ -150,7 +150,7 @@ def _of_findings(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 
 def _check_message(message: str, run: Mapping[str, Any] | None) -> str:
-    """Return the message of the check at the start of a finding; "" without one."""
+    """Return the message of a check with which the text of a finding begins; else ""."""
     checks = run["checks"] if run is not None else ()
     known = [check["message"] for check in checks if message.startswith(check["message"])]
     return max(known, key=len, default="")
@@ -165,7 +165,7 @@ def _names(names: Sequence[str], of: int) -> str:
 
 
 def _missing_curves(document: Mapping[str, Any]) -> Iterable[Doubt]:
-    """Yield the measured conditions without a curve, and the reason."""
+    """Yield doubts about conditions that were measured but have no curve, with the reason."""
     there = {
         (curve["surface"], curve["medium"], curve["nominal_normal_force_N"])
         for curve in document["curves"]
@@ -184,7 +184,7 @@ def _missing_curves(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 
 def _missing_reason(runs: Sequence[Mapping[str, Any]]) -> str:
-    """Return why runs of one condition give no curve; "" if they lack segments."""
+    """Return why the runs of a condition give no curve; "" if not all failed or were rejected."""
     failed = [run for run in runs if run["status"] != "done"]
     rejected = [run for run in runs if run["status"] == "done" and is_bad(run)]
     which = {1: "its only run", 2: "both runs"}.get(len(runs), f"all {len(runs)} runs")

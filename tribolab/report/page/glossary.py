@@ -1,4 +1,4 @@
-"""Glossary of the page, shown at table heads and as a list."""
+"""Terms of the page with their meanings, for table heads and for the list of terms."""
 
 from __future__ import annotations
 
@@ -64,15 +64,15 @@ GLOSSARY: dict[str, str] = {
     "Suspect": "A check found a possible error. The results are still used.",
 }
 
-# terms for campaigns of surfaces only
+# terms that only pages with surfaces need
 OF_SURFACES = frozenset(
     ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Sq", "Slope rms", "Hurst exponent", "Roll-off")
 )
 
-# of these, terms that require a contact
+# those among them that only pages with a contact need
 OF_CONTACT = frozenset(("A/A₀", "Pull-off force"))
 
-# terms that require a rubber or a fitted model
+# terms that only pages with a model need
 OF_MODELS = frozenset(
     (
         *(
@@ -88,7 +88,7 @@ OF_MODELS = frozenset(
 
 
 def words_of(*, runs: bool, surfaces: bool, contact: bool, models: bool) -> dict[str, str]:
-    """Return the terms used on a page with these sections, with their meanings.
+    """Return the terms, with meanings, that a page needs for the parts it has.
 
     >>> sorted(words_of(runs=False, surfaces=True, contact=False, models=False))[:3]
     ['Hurst exponent', 'Pq', 'Roll-off']
@@ -103,7 +103,7 @@ def words_of(*, runs: bool, surfaces: bool, contact: bool, models: bool) -> dict
     }
 
 
-# terms explained at their first use on the first screen
+# terms with a tooltip at their first use on the first screen
 TERMS: dict[str, str] = {
     "lift off": GLOSSARY["Lift-off"],
     "plateau": GLOSSARY["Plateau"],

@@ -1,4 +1,4 @@
-"""Curves and sliding modes in words."""
+"""Texts and numbers that the page derives from curves and sliding modes."""
 
 from __future__ import annotations
 
@@ -13,22 +13,24 @@ from tribolab.records.wording import error_text
 from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
 
-_MIN_SHARE = 0.005  # share of the variance below which a part is not listed
+_MIN_SHARE = 0.005  # share of the variance below which a contribution is not listed
 
 
 def by_speed(points: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return the rows of a curve with known speed and friction, from slow to fast."""
+    """Return the points of a curve whose speed and friction are known, from slow to fast."""
     known = [r for r in points if r["friction_coefficient"] is not None and r["sliding_speed_m_s"]]
     return sorted(known, key=lambda row: row["sliding_speed_m_s"])
 
 
 def half_speed(falling: Sequence[Mapping[str, Any]]) -> float | None:
-    """Return the speed [m/s] at which friction drops to half of the first row; None if never.
+    """Return the speed [m/s] at which friction has dropped to half that of the first point.
+
+    None if it does not drop so far; interpolated over the logarithm of the speed.
 
     Parameters
     ----------
     falling
-        Rows of a curve from its peak friction on, by increasing speed.
+        Points of a curve by increasing speed, from the peak friction on.
     """
     half = 0.5 * falling[0]["friction_coefficient"]
     for row, other in itertools.pairwise(falling):
@@ -41,7 +43,7 @@ def half_speed(falling: Sequence[Mapping[str, Any]]) -> float | None:
 
 
 def budget_shares(curve: Mapping[str, Any]) -> list[tuple[str, float]]:
-    """Return the parts of a curve's uncertainty, each with its mean share of the variance."""
+    """Return the contributions to a curve's uncertainty, with their mean share of the variance."""
     shares: dict[str, float] = {}
     for piece in curve["budget"]:
         shares[piece["part"]] = shares.get(piece["part"], 0.0) + (piece["share"] or 0.0)
@@ -76,7 +78,7 @@ def conditions(of: Sequence[Mapping[str, Any]]) -> str:
 
 
 def oscillation_text(mode: Mapping[str, Any]) -> str:
-    """Return the number of segments with stick-slip, and the scaling of its frequency.
+    """Return text on how many segments stick and slip, and how the frequency scales with speed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Key numbers of a campaign: one row per condition."""
+"""Tables of key numbers for the page: friction, running-in, roughness."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tribolab.report.plain import plain_speed
 
 
 def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
-    """Return highest and lowest friction of each measured curve, and the fitted model."""
+    """Return a table with highest and lowest µ of each curve, fitted shear stress and Rq."""
     models = {model["curve"]: model["fit"] for model in document.get("models", ())}
     rough = {
         surface["name"]: error_text(
@@ -73,7 +73,7 @@ def _zero(document: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
 
 
 def _stress(fit: Mapping[str, Any] | None) -> str:
-    """Return the shear stress with its 95 % interval, or the reason for its absence."""
+    """Return text on the fitted shear stress and its 95 % interval, or why there is none."""
     if fit is None:
         return "–"
     if not is_described(str(fit["judgement"])):
@@ -83,7 +83,7 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
 
 
 def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
-    """Return running-in and steady friction of each run at one speed; None without such runs.
+    """Return a table of running-in and steady friction of runs at one speed; None without such.
 
     The first rows are the means of repeats, with the U95 of the scatter between them, also without
     those that contradict the others.
@@ -101,7 +101,7 @@ def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
         steady = error_text(
             settled.steady_friction_coefficient, settled.steady_friction_coefficient_U95
         )
-        # a mean of friction that changes depends on the length of the run
+        # if friction changes along the run, this mean depends on the length of the run
         mean = error_text(settled.mean_friction_coefficient, settled.error_of_mean)
         cells = (
             run["name"],
@@ -135,7 +135,7 @@ _SETTLED_HEADS = "Run", *_MEANS, "Running-in distance", "After running-in", "Spe
 
 
 def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
-    """Return roughness, slope and Hurst exponent of each surface, and the number of scans."""
+    """Return a table with roughness, slope, Hurst exponent and number of scans per surface."""
     rows = []
     for surface in document["surfaces"]:
         row = surface["roughness"]

@@ -1,4 +1,4 @@
-"""The report as one HTML file that opens offline without network access.
+"""Writing of report.html: one file with all its data, which opens without a network.
 
 The sections are listed in `tribolab.report.page.sections`, with instructions for adding one.
 """
@@ -37,10 +37,10 @@ RunDocuments = Callable[[], Iterable[Json]]
 
 
 class Detail(NamedTuple):
-    """Details of one run: its place from 1, and all other data compressed.
+    """Details of one run: short entry, number from 1 (`place`), and the rest compressed.
 
-    A few runs are compressed together, as their details share most of their text: `packed` has them
-    all for the first, and is empty for the others; `part` counts them from 0.
+    Several runs are compressed together, because their details share most of their text. `packed`
+    of the first of them has the details of all, and is empty for the others; `part` is the index.
     """
 
     run: Json
@@ -57,7 +57,7 @@ def write_page(
     live: Sequence[ShownFigure] = (),
     points: Mapping[str, Sequence[RunPoint]] | None = None,
 ) -> Path:
-    """Write ``report.html`` with all its data into the results folder.
+    """Write report.html with all its data into the results folder.
 
     The details of runs are compressed, and the page unpacks them on request. The page is written
     piece by piece, with the details of only a few runs in memory.
@@ -77,7 +77,7 @@ def write_page(
     live
         Figures that the page draws.
     points
-        Friction over speed, by name of the run.
+        Friction against speed, by name of the run.
     """
     context = _context(document, folder, runs, store, live, points or {})
     template, frame = framing("report.html.j2", shown_sections(context), folder, draws=True)
@@ -89,7 +89,7 @@ def write_page(
 
 
 def prepare_page() -> None:
-    """Compile the templates and compress the library, before any results exist."""
+    """Compile the templates and compress the drawing library in advance, e.g. during drawing."""
     library()
     jinja = environment(Path())
     for name in jinja.list_templates():
@@ -155,7 +155,7 @@ def _context(
 
 
 def grouped_findings(findings: Sequence[Json]) -> list[Json]:
-    """Return findings grouped by message, each with all its runs.
+    """Return findings without repetition: those with one message in one entry, with all runs.
 
     Examples
     --------
@@ -166,7 +166,7 @@ def grouped_findings(findings: Sequence[Json]) -> list[Json]:
     rows: dict[tuple[str, str, str], Json] = {}
     for finding in findings:
         where, message = finding["where"], finding["message"]
-        # findings on several surfaces or models are grouped, although each place has its name
+        # "surface A" and "surface B": group both under "surface", with the names in `parts`
         kind, _, name = where.partition(" ")
         part = name if kind in ("surface", "model") else ""
         key = finding["severity"], kind if part else where, message
@@ -179,7 +179,7 @@ def grouped_findings(findings: Sequence[Json]) -> list[Json]:
 
 
 def omitted_rows(runs: Sequence[Json]) -> list[Json]:
-    """Return the omitted parts of all runs, one row per reason, longest first."""
+    """Return why time of the records was left out: a row per reason, the longest time first."""
     total = sum(run["duration_s"] or 0.0 for run in runs)
     rows: dict[str, Json] = {}
     for run in runs:

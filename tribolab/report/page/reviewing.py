@@ -1,4 +1,4 @@
-"""Current review file as data, so that a reader can edit decisions on the page."""
+"""Decisions in the review file as data, so that a reader of the page can edit them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comment lines a
 
 
 def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> Json:
-    """Return the decisions of a campaign as data for the page.
+    """Return the decisions on a campaign as data for the page.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def _same(row: Mapping[str, Any], plain: Mapping[str, Any]) -> bool:
 
 
 def decision_texts(text: str) -> tuple[str, list[str]]:
-    r"""Return the text before the first decision of a review file, and each decision's text.
+    r"""Split the text of a review file into the part before its decisions and each decision.
 
     A decision includes the comment lines directly above it. If decisions are not separate tables,
     both are empty: then only their content can be kept.

@@ -1,4 +1,4 @@
-"""List of all runs, worst first: state, friction, deviation from the repeats, trace."""
+"""Rows of the page's list of runs: state, friction, deviation from the repeats, trace."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.report.plain import plain_speed
 
 _ODD = "odd"
 _ALL, _STEADY = "all speeds", "steady"
-_DIGITS = 6  # digits of a deviation, so that those of two repeats are equal
+_DIGITS = 6  # decimals of a deviation when sorting: two repeats deviate equally but for rounding
 
 
 STATES = {
@@ -33,10 +33,10 @@ STATES = {
 
 
 class ListedRun(NamedTuple):
-    """Row of a run: `values` are friction and deviation in words at each speed.
+    """Row of one run; `values` has its friction and deviation as texts, for each speed.
 
     `place` is its position in the report, from 1; `spark` the outline of its trace as SVG path;
-    `worst` its rank.
+    `worst` its rank in the order of severity, from 0.
     """
 
     run: Mapping[str, Any]
@@ -54,7 +54,7 @@ class ListedRun(NamedTuple):
 
 
 class RunList(NamedTuple):
-    """Rows, worst first, the speeds for comparison, and the initial speed."""
+    """Rows, worst first; speeds to choose from; and index of the speed that is shown first."""
 
     rows: tuple[ListedRun, ...]
     speeds: tuple[str, ...]
@@ -66,14 +66,14 @@ def listed_runs(
     points: Mapping[str, Sequence[RunPoint]],
     traces: Mapping[str, Mapping[str, Any]],
 ) -> RunList:
-    """Return all runs: first by severity of their state, then by the deviation shown.
+    """Return the rows of all runs, worst first: by state, then by deviation from the repeats.
 
     Parameters
     ----------
     runs
         As in report.json; short entries suffice.
     points
-        Friction over speed, by name of the run.
+        Friction against speed, by name of the run.
     traces
         Coarse trace from `tribolab.records.runs.traces`, by name of the run.
     """
@@ -104,7 +104,7 @@ def listed_runs(
 
 
 def _reason(run: Mapping[str, Any], common: Collection[str]) -> str:
-    """Return the reason for a state, shortened if it is common to all runs."""
+    """Return the reason for the state of a run, shortened if all runs have it."""
     reason = why(run)
     name, _, message = reason.partition(": ")
     shared = name in map(check_words, common)
@@ -122,7 +122,7 @@ def _rank(row: ListedRun, off: float | None) -> tuple[int, float]:
 
 
 def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
-    """Return the distinct speeds of all runs; neighbours count as one."""
+    """Return the speeds of all runs, increasing; speeds within 10 % count as one."""
     speeds: list[float] = []
     for speed in sorted({point.speed for of_run in points.values() for point in of_run}):
         if speed > (MAX_SPEED_RATIO * speeds[-1] if speeds else 0):
@@ -131,7 +131,7 @@ def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
 
 
 def _most_common_speed(means: Sequence[Sequence[float | None]]) -> int:
-    """Return the index of the speed with most runs; of several the middle one."""
+    """Return the index of the speed at which most runs have a value; of equals, the middle one."""
     counts = [sum(value is not None for value in column) for column in zip(*means, strict=True)]
     best = [place for place, count in enumerate(counts) if count == max(counts)]
     return best[len(best) // 2] if best else 0
@@ -148,7 +148,7 @@ def _means(
 
 
 def _steady(run: Mapping[str, Any]) -> float | None:
-    """Return the steady friction of a run at one speed, else its overall mean."""
+    """Return the steady (else the mean) friction of a run at one speed; None at several speeds."""
     if len(run["running_in"]) != 1:
         return None
     (settled,) = run["running_in"]
@@ -163,7 +163,7 @@ def _overall(run: Mapping[str, Any]) -> float | None:
 def _deviations(
     runs: Sequence[Mapping[str, Any]], means: Mapping[str, Sequence[float | None]]
 ) -> dict[str, list[float | None]]:
-    """Return the relative deviation of each run from the median of its repeats, by speed."""
+    """Return the relative deviation of each run from the median of its repeats, per speed."""
     conditions: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
     for run in runs:
         key = run["surface"], run["medium"], run["nominal_normal_force_N"], run["quantity"]

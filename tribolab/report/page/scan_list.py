@@ -1,4 +1,4 @@
-"""List of all scans, worst first."""
+"""Rows of the page's list of scans, those with failed checks first."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _ORDER = (*_FAILED, "suspect")
 
 
 class ListedScan(NamedTuple):
-    """Scan, its surface, and the most severe objection of its checks in words."""
+    """Row of one scan: its name, surface and state, and the message of its worst check."""
 
     name: str
     surface: str
@@ -20,7 +20,7 @@ class ListedScan(NamedTuple):
 
 
 def listed_scans(document: Mapping[str, Any]) -> list[ListedScan]:
-    """Return the scans of all surfaces, those with objections first."""
+    """Return a row for each scan of all surfaces: rejected first, then suspect, then others."""
     rows = []
     for surface in document["surfaces"]:
         for file in surface["files"]:

@@ -27,7 +27,7 @@ class Section:
     template
         Path of its template under ``templates/``.
     key
-        Key of the document that the section requires; "" for none.
+        Key under which the document must have data for this section; "" if always shown.
     """
 
     id: str

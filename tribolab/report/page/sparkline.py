@@ -1,4 +1,4 @@
-"""Outline of a run's trace, small enough for a table row."""
+"""Small picture of a run's trace, for a row of a table."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 from tribolab.records.packed import unpack_points
 
 WIDTH, HEIGHT = 150, 30  # size of the picture in its own units
-_COLUMNS = 50  # each with its minimum and maximum
+_COLUMNS = 50  # columns of the picture, each drawn from its minimum to its maximum
 
 
 def spark_path(trace: Mapping[str, Any]) -> str:
-    """Return the main signal of a trace over time as an SVG path, `WIDTH` by `HEIGHT`.
+    """Return the main signal of a trace against time as an SVG path, `WIDTH` by `HEIGHT`.
 
     Parameters
     ----------

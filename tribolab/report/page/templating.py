@@ -1,4 +1,4 @@
-"""Common parts of all pages: templates, scripts, styles, and content security policy."""
+"""What all pages share: template environment, scripts, styles, content security policy."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
-# characters that are safe in a data URL within a quoted HTML attribute
+# characters that need no escape in a data URL inside a quoted HTML attribute
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 _STYLES = ("report.css", "still.css", "review.css")
 _SCRIPTS = (
@@ -60,7 +60,7 @@ _LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"
 def framed(
     template: str, context: Mapping[str, Any], sections: Sequence[Section], folder: Path
 ) -> str:
-    """Return a page from a template that extends ``frame.html.j2``.
+    """Return the HTML of a page whose template extends ``frame.html.j2``.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def framed(
 def framing(
     template: str, sections: Sequence[Section], folder: Path, *, draws: bool
 ) -> tuple[jinja2.Template, Json]:
-    """Return a template, and the variables for the frame of the page.
+    """Return the template of a page, and the variables that its frame needs.
 
     Parameters
     ----------
@@ -92,9 +92,8 @@ def framing(
 
     Notes
     -----
-    Only scripts and styles with listed checksums are allowed, including the library, which is
-    unpacked from the page. It creates an empty style element, whose checksum is also allowed, and
-    fills it by script.
+    The browser accepts only scripts and styles with a listed checksum. These include the drawing
+    library, and the empty style element that the library creates and then fills.
     """
     style = "".join(asset(name) for name in _STYLES)
     names = (*_SCRIPTS[:4], *_DRAWING, *_SCRIPTS[4:]) if draws else _SCRIPTS
@@ -115,12 +114,12 @@ def framing(
 
 @cache
 def library() -> str:
-    """Return the drawing library, compressed, as text."""
+    """Return the drawing library (plotly) as compressed text."""
     return deflated(asset(_LIBRARY).encode())
 
 
 class _Compiled(jinja2.BytecodeCache):
-    """Cache of compiled templates, for several pages in one process."""
+    """Compiled templates, so that several pages in one process compile them only once."""
 
     def __init__(self) -> None:
         self._codes: dict[str, bytes] = {}
@@ -145,7 +144,7 @@ def _printed(value: object) -> object:
 
 
 def environment(folder: Path) -> jinja2.Environment:
-    """Return the template environment of pages whose figures are in a folder."""
+    """Return the template environment of a page, with its filters; figures are in `folder`."""
     jinja = jinja2.Environment(
         loader=jinja2.PackageLoader("tribolab.report"),
         bytecode_cache=_COMPILED,
@@ -209,7 +208,7 @@ def environment(folder: Path) -> jinja2.Environment:
 
 
 def _wider_error(row: Row, name: str, ending: str) -> float | None:
-    """Return the larger error of a segment in its row, over its path or beyond it."""
+    """Return the error of a segment: within its path, or beyond it (trend) if that is larger."""
 
     def column(key: str) -> np.ndarray:
         return np.array(number_of(row, key), float)
@@ -218,7 +217,7 @@ def _wider_error(row: Row, name: str, ending: str) -> float | None:
 
 
 def asset(name: str) -> str:
-    """Return the text of one of the page's asset files."""
+    """Return the text of a script, style or licence file of the page."""
     return (files("tribolab.report") / "assets" / name).read_text(encoding="utf-8")
 
 
@@ -229,12 +228,12 @@ def csp_hash(text: str) -> str:
 
 
 def data_address(svg: str) -> Markup:
-    """Return an SVG figure as a data URL.
+    """Return an SVG figure as a data URL for an image.
 
     As an image it is isolated from the page: its ids cannot collide and its scripts cannot run.
     """
     body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
-    # HTML's special characters in quoted attributes (" & < >) are already percent-encoded
+    # safe in HTML, because quote() percent-encodes " & < >
     return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
 
 
@@ -242,7 +241,7 @@ _TERM = re.compile("|".join(map(re.escape, TERMS)), re.IGNORECASE)
 
 
 def explained(text: str) -> list[tuple[str, str]]:
-    """Split a sentence into pieces; each first use of a glossary term has its explanation.
+    """Split a sentence at glossary terms; return each piece with its explanation, else "".
 
     Examples
     --------
@@ -261,5 +260,5 @@ def explained(text: str) -> list[tuple[str, str]]:
 
 
 def breakable(name: str) -> Markup:
-    """Return a name that a narrow column may break after ``_`` or ``-``; else unchanged."""
+    """Return a name as HTML that may break into two lines after ``_`` or ``-``."""
     return Markup("<wbr>").join(re.findall(r"[^_-]+[_-]*|[_-]+", name))

@@ -1,4 +1,4 @@
-"""Views of the first screen; the type of test determines the first one."""
+"""Views of the first screen, e.g. µ against speed or time, ordered to suit the test."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _TITLES = {
     "load": "µ vs. load",
     "surfaces": "Surfaces",
 }
-_MIN_SPEEDS = 2  # smallest number of speeds of a curve
+_MIN_SPEEDS = 2  # fewest speeds for which µ against speed is the first view
 
 
 class View(NamedTuple):
-    """Figures shown together, and the numbers below them."""
+    """Figures that are shown together, with the key numbers below them."""
 
     name: str
     title: str
@@ -32,13 +32,13 @@ class View(NamedTuple):
 
     @property
     def columns(self) -> int:
-        """Number of figures per row to fill the screen."""
+        """Number of figures side by side, so that they fill the screen."""
         count = len(self.figures)
         return 1 if count == 1 else 2 if count in (2, 4) else 3 if count <= 9 else 4
 
 
 def views(document: Mapping[str, Any], live: Sequence[ShownFigure]) -> list[View]:
-    """Return the views of a campaign, first the one that suits its test.
+    """Return the views for which a campaign has figures, the most suitable first.
 
     Parameters
     ----------

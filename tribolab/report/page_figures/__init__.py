@@ -1,1 +1,1 @@
-"""Figures of the page that the reader can zoom and filter, one module for each subject."""
+"""Interactive figures of the page (zoom, filters), one module for each subject."""

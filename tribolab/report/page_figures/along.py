@@ -1,4 +1,4 @@
-"""Friction along runs at one speed over distance, time and cycles: running-in, steady state."""
+"""Figures of friction against distance, time or cycles, in runs at one speed: running-in."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MAX_RUNS = 8  # most runs shown
 
 
 class Along(NamedTuple):
-    """Run at one speed, its friction along the run, and its running-in if it is long enough."""
+    """A run at one speed, its friction row by row, and its running-in if the run is long enough."""
 
     record: RunRecord
     course: Sequence[Row]
@@ -28,12 +28,12 @@ class Along(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """Unit over which friction is averaged, e.g. strokes."""
+        """What each value is the mean of, e.g. a stroke."""
         return STROKES if self.settled is None else self.settled.counted
 
 
 def along_of(record: RunRecord) -> Along | None:
-    """Return a run at one speed with several strokes or a running-in; else None."""
+    """Return the data of a run at one speed with at least two strokes or running-in; else None."""
     settled = record.facts.running_in
     if record.outcome.quality in BAD or len(settled) > 1:
         return None
@@ -44,7 +44,7 @@ def along_of(record: RunRecord) -> Along | None:
 
 
 def _strokes(record: RunRecord) -> list[Row]:
-    """Return the friction of each stroke of a run at one speed; empty for several speeds."""
+    """Return a row with the friction of each stroke of a run; empty if it has several speeds."""
     rows = [row for row in record.facts.segments if row.get("friction_coefficient") is not None]
     speeds = [number_of(row, "sliding_speed_m_s") or 0.0 for row in rows]
     tolerance = 1 + of_points.SPEED_TOLERANCE.value
@@ -67,19 +67,19 @@ _OVER = (
     ("cycles", Axis("cycle"), "number", ("start_number", "stop_number")),
 )
 _INK: Arguments = {"colour": BLACK}
-_STEADY = "steady"  # label of the lines at the steady value, the last in the legend
+_STEADY = "steady"  # legend label of the lines at the steady friction, drawn last
 _MU = Axis("friction coefficient µ")
 
 
 def along_figures(runs: Sequence[Along], count: int) -> list[FigureSpec]:
-    """Return friction along runs over distance, time and cycles.
+    """Return figures of friction against distance, time and cycle number, with steady values.
 
     Parameters
     ----------
     runs
         Runs to show.
     count
-        Number of all such runs.
+        Number of runs at one speed, including those not shown.
     """
     figures = []
     for name, axis, column, ends in _OVER:
@@ -107,7 +107,7 @@ def along_figures(runs: Sequence[Along], count: int) -> list[FigureSpec]:
 
 
 def _title(runs: Sequence[Along]) -> str:
-    """Return the steady value of a single run, or a title for several runs."""
+    """Return the title of the figure: the steady friction if only one run is shown."""
     if len(runs) > 1:
         return "Friction along the runs"
     (settled,) = (run.settled for run in runs)
@@ -121,7 +121,7 @@ def _title(runs: Sequence[Along]) -> str:
 
 
 def _note(runs: Sequence[Along]) -> str:
-    """Explain the dashes or the error bars."""
+    """Return a note that explains the dashed lines or the error bars."""
     if any(run.settled is not None for run in runs):
         return "Dashes: steady state."
     return "Mean of each stroke with its U95; too few strokes to look for running-in."

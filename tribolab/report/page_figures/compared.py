@@ -1,4 +1,4 @@
-"""Comparison of surfaces, media and loads: decrease of friction with speed, and every run."""
+"""Figures that compare curves: friction relative to its maximum, and each run of the repeats."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _HALF = 0.5
 
 
 def comparisons(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return all curves relative to their highest friction, and all single runs of repeats.
+    """Return a figure of all curves divided by their maximum, and one of the runs in each curve.
 
-    Curves in absolute units are on their cards and are not repeated.
+    Absolute friction is on the card of each surface and medium.
     """
     colours = surface_colours([*known.surfaces, *(c.outcome.surface for c in known.curves)])
     return [*_normalised_curves(known, colours), _every_run(known, colours)]
@@ -40,8 +40,8 @@ def _load(curve: CurveRecord) -> str:
 
 
 def _normalised_curves(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[FigureSpec]:
-    """Return normalised friction over speed of all curves; empty for fewer than two."""
-    alone = len(systems(known)) == 1  # then loads are compared, each in its colour
+    """Return a figure of µ divided by its maximum against speed; empty for a single curve."""
+    alone = len(systems(known)) == 1  # a single surface and medium: a colour for each load
     loads = places(map(_load, known.curves))
     series = []
     for curve in known.curves:
@@ -104,7 +104,7 @@ def _normalised_series(curve: CurveRecord, label: str, colour: int) -> Series | 
 
 
 def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> FigureSpec:
-    """Return the friction of each run of the curves with repeats."""
+    """Return a figure with the friction of every single run, for curves with repeats."""
     series: list[Series] = []
     for curve in known.curves:
         outcome = curve.outcome

@@ -1,4 +1,4 @@
-"""Uncertainty budget of the measured curves: one bar for each part, and the best improvement."""
+"""Figure of the uncertainty budget: a bar for each contribution, and advice to reduce U95."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from tribolab.metrology.budget_parts import BETWEEN, NOISE, coverage_factor
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
 
-_MIN_SHARE = 0.005  # share of the variance below which a part has no bar
+_MIN_SHARE = 0.005  # share of the variance below which a contribution has no bar
 _MIN_GAIN = 0.01  # relative reduction of U95 below which no advice is given
 
 
 class Contribution(NamedTuple):
-    """One part of the uncertainty of one point.
+    """One contribution to the uncertainty of one point of a curve.
 
     `relative` is its standard uncertainty divided by µ, `share` its share of the variance, and
     `gain` the relative reduction of U95 by one more repeat or by halving this part.
@@ -30,7 +30,7 @@ class Contribution(NamedTuple):
 
 
 def contributions(curves: Iterable[CurveRecord]) -> list[Contribution]:
-    """Return all parts of the uncertainty of all points."""
+    """Return every contribution to the uncertainty of every point of the curves."""
     found = []
     for curve in curves:
         points = {row["sliding_speed_m_s"]: row for row in curve.points}
@@ -49,7 +49,7 @@ def contributions(curves: Iterable[CurveRecord]) -> list[Contribution]:
 
 
 def _gain(part: str, share: float, dof: float, runs: float) -> float:
-    """Return the relative reduction of U95 by one more repeat, or by halving another part."""
+    """Return the relative reduction of U95 by one more repeat, or by halving this contribution."""
     if part != BETWEEN:
         return 1 - math.sqrt(1 - 0.75 * share)
     smaller = math.sqrt(1 - share / (runs + 1))
@@ -58,7 +58,7 @@ def _gain(part: str, share: float, dof: float, runs: float) -> float:
 
 
 def contribution_figures(curves: Sequence[CurveRecord]) -> list[FigureSpec]:
-    """Return one bar for each part: its root-mean-square standard uncertainty over all points."""
+    """Return a figure with a bar per contribution: its rms standard uncertainty of all points."""
     parts: dict[str, list[Contribution]] = {}
     every = contributions(curves)
     for each in every:
@@ -90,7 +90,7 @@ def contribution_figures(curves: Sequence[CurveRecord]) -> list[FigureSpec]:
 
 
 def _advice(parts: dict[str, list[Contribution]], share: dict[str, float], count: int) -> str:
-    """Return a sentence on the largest part and on the best improvement."""
+    """Return sentences on the largest contribution, and on what would reduce U95 most."""
     first = max(share, key=lambda part: share[part])
     gains = {part: sum(each.gain for each in mine) / count for part, mine in parts.items()}
     best = max(gains, key=lambda part: gains[part])

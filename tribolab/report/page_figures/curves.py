@@ -1,4 +1,4 @@
-"""Measured and computed friction over speed: cards for the page, figures for publication."""
+"""Figures of measured and computed friction against speed, per surface and medium, or load."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ from tribolab.report.plain import listed, plain_speed
 if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
-_ONE_RATIO = 1.1  # largest ratio of slide-roll ratios of curves on one entrainment-speed axis
-_MAX_NAMED = 3  # runs named in a title
+_ONE_RATIO = 1.1  # slide-roll ratios that differ by less than this factor count as equal
+_MAX_NAMED = 3  # most runs named in a title
 _AS_FOUND = "without decisions by hand"
 _SPEED, _ROLLING, _MU = "sliding_speed_m_s", "rolling_speed_m_s", "friction_coefficient"  # columns
 
 
 @dataclass(frozen=True)
 class FrictionOverSpeed:
-    """Measured and computed friction over speed of a campaign.
+    """Measured and computed friction against speed of a campaign.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def systems(known: FrictionOverSpeed) -> dict[tuple[str, str], list[CurveRecord]
 
 
 def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
-    """Return surface and medium in words; without both the names or number of the runs."""
+    """Return "surface, medium" as a name; if both are unknown, the runs or their number."""
     named = ", ".join(filter(None, (surface, medium)))
     if named or not runs:
         return named or "runs"
@@ -81,14 +81,14 @@ def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
 
 
 def distinguish_media(media: Collection[str], in_liquid: str, dry: str) -> str:
-    """Return the legend for dry and wet data; "" if a figure shows only one of them.
+    """Return a sentence on the styles of wet and dry data; "" if a figure shows only one kind.
 
     Parameters
     ----------
     media
         Media in the figure.
     in_liquid, dry
-        Style of each in a word.
+        Word for the style of each, e.g. "filled" and "open".
 
     Examples
     --------
@@ -105,9 +105,9 @@ def distinguish_media(media: Collection[str], in_liquid: str, dry: str) -> str:
 
 
 def card_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return one figure for each surface and medium: measured, and the model with its band.
+    """Return a figure per surface and medium: measured curves, and the model with its band.
 
-    Figures of one medium have the same axes, for easy comparison of surfaces.
+    Figures with the same medium have the same axes, so that surfaces can be compared.
     """
     cards = [
         (medium, _card(known, place, surface, medium, curves))
@@ -152,7 +152,7 @@ def _card(
 
 
 def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSpec:
-    """Return a card over the entrainment speed if all its data have one slide-roll ratio."""
+    """Return a figure against entrainment speed if all its data have the same slide-roll ratio."""
     ratios = [float(data.attrs.get("slide_roll_ratio", np.nan)) for data in drawn]
     ratio = float(np.mean(ratios))
     if not ratio > 0 or max(ratios) > _ONE_RATIO * min(ratios):
@@ -163,7 +163,7 @@ def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSp
 
 
 def _card_style(series: Series, one_load: bool) -> Series:
-    """Return a series in the style of cards: points not joined, a single load unshaded."""
+    """Return a series in the style of a card: points without lines; no shade for one load."""
     if series.label == _AS_FOUND:
         return replace(series, colour=GREY, shade=0.0, open=True, joined=False)
     if one_load:
@@ -172,7 +172,7 @@ def _card_style(series: Series, one_load: bool) -> Series:
 
 
 def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
-    """Return the legend label of a curve; with its load if that is ambiguous."""
+    """Return the legend label of a measured curve, with whatever tells it from the others."""
     loads = [other.outcome.normal_force for other in curves]
     nameless = not (curve.surface or curve.medium)
     if len(curves) > 1 and nameless:
@@ -183,7 +183,7 @@ def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
 
 
 def labels_of(curve: CurveOutcome) -> SeriesLabels:
-    """Return the labels common to all series of a curve."""
+    """Return surface, medium, load and runs of a curve, by which its series can be selected."""
     return {
         "surface": curve.surface,
         "medium": curve.medium,
@@ -232,12 +232,12 @@ def _measured(known: FrictionOverSpeed, curve: CurveRecord, label: str) -> xr.Da
 
 
 def _first_component(text: str) -> str:
-    """Return the first component missing from an uncertainty, short enough for a tooltip."""
+    """Return the first contribution that an uncertainty omits, short enough for a tooltip."""
     return text.partition(";")[0].partition(", because")[0]
 
 
 def _as_found(curve: CurveRecord) -> list[xr.Dataset]:
-    """Return the curve without a person's decisions, if there are any."""
+    """Return the curve as it was without manual decisions; empty without such decisions."""
     rows = [row for row in curve.points_as_found if row[_MU] is not None]
     words = [
         f"{_AS_FOUND}\nv = {plain_speed(number_of(row, _SPEED))}\n"
@@ -252,7 +252,7 @@ def _has_stress(model: ModelRow) -> bool:
 
 
 def slide_roll_ratio(curve: CurveRecord) -> float | None:
-    """Return the slide-roll ratio of a measured curve; None if one body was at rest."""
+    """Return the slide-roll ratio [1] of a measured curve; None if one body was at rest."""
     for row in curve.points:
         sliding, rolling = (
             number_of(row, _SPEED),
@@ -264,14 +264,14 @@ def slide_roll_ratio(curve: CurveRecord) -> float | None:
 
 
 def _near_measured(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
-    """Return the rows of a model within a decade around the measured speeds."""
+    """Return the rows of a model from a tenth to ten times the measured speeds."""
     known = [float(row["sliding_speed_m_s"] or 0) for row in curve.points]
     low, high = min(known) / 10, max(known) * 10
     return [row for row in rows if low <= float(row["sliding_speed_m_s"] or 0) <= high]
 
 
 def _modelled(known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord) -> list[xr.Dataset]:
-    """Return the computed curve with its band, within a decade around the measured speeds."""
+    """Return the computed curve with its band, near the measured speeds; empty if it has none."""
     rows = _near_measured(model.curve, curve)
     if not rows:
         return []
@@ -289,7 +289,7 @@ def _modelled(known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord) -> 
 
 
 def load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return a figure for each load that compares surfaces, for publication."""
+    """Return a figure for each load with at least two surfaces, as files for publication."""
     by_load: dict[float, list[CurveRecord]] = {}
     for curve in known.curves:
         if curve.outcome.normal_force is not None and curve.outcome.surface:

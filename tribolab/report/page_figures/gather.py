@@ -1,4 +1,4 @@
-"""Figures of a campaign that need its data files, by subject, for the page and as files."""
+"""Figures that need the data files of a campaign: collected by subject, made by workers."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Bands = Callable[[Path], dict[str, Band]]
 def begun_page_figures(
     subjects: Sequence[Subject], store: Store, executor: Executor | None = None
 ) -> Callable[[], tuple[list[PageRecord], list[Notice]]]:
-    """Start the page's figures that need data files; the returned function waits for them.
+    """Start to make the figures of the page; the returned function waits and returns them.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def _page_record(make: Make, bands: Bands | None, folder: Path) -> PageRecord:
 
 
 class Subject(NamedTuple):
-    """Figures of one subject: function that describes them, its arguments, and its data files."""
+    """Figures of one subject: function that describes them, its arguments, files that it reads."""
 
     name: str
     make: Make
@@ -84,7 +84,7 @@ def figure_subjects(
     modes: Mapping[str, ModeRecord],
     joints: Sequence[JointRecord],
 ) -> list[Subject]:
-    """Return the figures that can be drawn from the data files of a campaign, by subject.
+    """Return the subjects for figures: ramps, models, joint fits, surfaces, stick-slip.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def figure_subjects(
     done = [surface for surface in outcome.surfaces if surface.done]
     traced = dict.fromkeys(contact.slow.file for contact in judged if contact.slow)
     ramps = [run for run in outcome.runs if has_ramps(run)][:MAX_RUNS]
-    alone = not outcome.runs  # without runs the surfaces come first
+    alone = not outcome.runs  # without runs, surfaces are the first view of the page
     return [
         Subject("ramps", partial(ramp_specs, ramps), ramps, [run.data_file for run in ramps]),
         Subject(

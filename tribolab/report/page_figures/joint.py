@@ -1,4 +1,4 @@
-"""Figures of the joint fits of all loads."""
+"""Figures of joint fits: one shear-stress fit to the curves at all loads of a surface."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tribolab.report.page_figures.curves import system_name
 
 
 class _Fitted(NamedTuple):
-    """Points and curves of a joint fit."""
+    """Measured points and fitted curves of a joint fit, as the figure needs them."""
 
     points: xr.Dataset
     curves: xr.Dataset
@@ -27,7 +27,7 @@ class _Fitted(NamedTuple):
 def joint_specs(
     joints: Sequence[JointRecord], surfaces: Sequence[str], folder: Path
 ) -> list[FigureSpec]:
-    """Return a figure for each joint fit.
+    """Return a figure for each joint fit: measured points, fitted curves and residuals.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Friction over load at the slowest, a middle and the fastest common speed of the loads."""
+"""Figures of friction against load, at the lowest, a middle and the highest speed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LOAD, _MU = Axis("normal force", "N"), Axis("friction coefficient µ")
 
 
 def over_load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return friction over load of each surface and medium measured at several loads."""
+    """Return figures of friction against load, if a surface and medium have several loads."""
     several = {
         name: [curve for curve in curves if curve.outcome.normal_force is not None]
         for name, curves in systems(known).items()

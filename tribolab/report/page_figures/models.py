@@ -1,4 +1,4 @@
-"""Figures of the models: curves with residuals, shear stress, sensitivity, film profiles."""
+"""Figures of the mixed-lubrication models: curves, shear stress, sensitivity, film profiles."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _MPA = 1e-6
 def model_specs(
     models: Sequence[ModelRow], surfaces: Sequence[str], folder: Path
 ) -> list[FigureSpec]:
-    """Return the figures of the models that need their data files.
+    """Return all figures of the mixed-lubrication models.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def model_specs(
 
 
 def bands_of_models(models: Sequence[ModelRow], folder: Path) -> dict[str, Band]:
-    """Return the uncertainty of each model, by the name of the measured curve."""
+    """Return the uncertainty band of each computed curve, by name of the measured curve."""
     bands = {}
     for row in models:
         if "uncertainty" in row.model.parts:
@@ -80,7 +80,7 @@ def _labels(row: ModelRow) -> SeriesLabels:
 
 
 def shear_stress_figure(models: Sequence[ModelRow], surfaces: Sequence[str]) -> FigureSpec:
-    """Return the fitted shear stresses over load."""
+    """Return a figure of the fitted shear stress against load, per surface and medium."""
     rows = [
         fit
         | {
@@ -125,7 +125,7 @@ def _by_system(models: Sequence[ModelRow]) -> dict[tuple[str, str], list[ModelRo
 
 
 def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> FigureSpec:
-    """Return the sensitivity of the model to each uncertain input."""
+    """Return a figure of how much the computed friction changes with each uncertain input."""
     series = []
     for row in models:
         varied = sorted(row.sensitivity, key=lambda change: float(change["largest_change"] or 0))
@@ -167,7 +167,7 @@ def _change_tooltip(change: Row) -> str:
 
 
 def _curves(models: Sequence[ModelRow], order: Sequence[str], folder: Path) -> list[FigureSpec]:
-    """Return a figure for each surface and medium: measured, computed, and the residuals."""
+    """Return a figure per surface and medium: measured points, computed curve, residuals."""
     figures = []
     for (surface, medium), rows in _by_system(models).items():
         specs = []
@@ -188,7 +188,7 @@ def _curves(models: Sequence[ModelRow], order: Sequence[str], folder: Path) -> l
 
 
 def _regime_maps(models: Sequence[ModelRow], folder: Path) -> list[FigureSpec]:
-    """Return friction and film ratio over viscosity times speed, for each surface and load."""
+    """Return figures of µ and film ratio against viscosity × speed, per surface and load."""
     groups: dict[tuple[str, float | None], list[ModelRow]] = {}
     for row in models:
         if row.fit is not None and {"fit", "curve", "factors"} <= set(row.model.parts):
@@ -227,17 +227,17 @@ def _regime_maps(models: Sequence[ModelRow], folder: Path) -> list[FigureSpec]:
 
 
 def _labelled(spec: FigureSpec, row: ModelRow) -> FigureSpec:
-    """Return a figure whose series are labelled with the medium and load of a model."""
+    """Return a figure whose series have the surface, medium and load of a model."""
     return replace(spec, series=tuple(replace(one, **_labels(row)) for one in spec.series))
 
 
 def _merged(
     specs: Sequence[FigureSpec], id: str, name: str, alt: str, *, one_load: bool
 ) -> FigureSpec:
-    """Return one figure with the series of several, for the section on models."""
+    """Return a single figure with the series of several figures (of one surface and medium)."""
     series = tuple(one for spec in specs for one in spec.series)
     title = f"{name}: {specs[0].title[:1].lower()}{specs[0].title[1:]}"
-    note = max((spec.note for spec in specs), key=len)  # the note of a model is the longest
+    note = max((spec.note for spec in specs), key=len)  # the longest note also explains the model
     return replace(
         specs[0],
         note=note,

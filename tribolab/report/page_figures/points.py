@@ -1,4 +1,4 @@
-"""Friction over speed, run by run, and the components of a curve's error bars."""
+"""Mean friction of each run at each speed, and the error bars of a curve with their source."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import error_text
 from tribolab.report.plain import plain_speed
 
-_NAMED = 4  # runs named at a point
-MAX_SPEED_RATIO = 1.1  # largest ratio of speeds that count as one, as for measured curves
+_NAMED = 4  # most runs named in a tooltip
+MAX_SPEED_RATIO = 1.1  # speeds that differ by at most this factor count as one
 
 
 class RunPoint(NamedTuple):
-    """Mean friction of one run at one speed [m/s], its U95 within the run, and sample numbers."""
+    """Mean friction `mu` of one run at one speed [m/s], and `within`: its U95 within the run."""
 
     run: str
     speed: float
@@ -32,7 +32,7 @@ class RunPoint(NamedTuple):
 
 
 class PointError(NamedTuple):
-    """U95 of a point of a curve, the variation it includes, and the scatter of its runs."""
+    """U95 of a point of a curve (`size`), its source, and the errors that it is made of."""
 
     size: float | None
     source: str
@@ -43,7 +43,7 @@ class PointError(NamedTuple):
 def run_points(
     name: str, segments: Sequence[Row], offset: str = "", filed: Mapping[float, float] | None = None
 ) -> list[RunPoint]:
-    """Return mean friction over speed of one run.
+    """Return the mean friction of one run at each of its speeds.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def run_points(
     segments
         Rows of its segments, as in report.json.
     offset
-        Method of offset removal; with the half loop, two strokes are one observation.
+        Method of offset removal; with "half loop", two strokes are one observation.
     filed
         Assigned load [N] of each measured load [N] of a run with several loads; each point has one.
 
@@ -76,7 +76,7 @@ def run_points(
             for load, rows in parts.items()
             for point in run_points(name, rows, offset)
         ]
-    # segments rejected by a person are listed in the tables only
+    # manually rejected segments appear in the tables only
     rows = [row for row in segments if not row.get("rejected")]
     rows.sort(key=lambda row: number_of(row, "start_s") or 0.0)
 
@@ -113,12 +113,12 @@ def _nearest(loads: Iterable[float], load: float) -> float:
 
 
 def of_curve(points: Iterable[RunPoint], load: float | None) -> list[RunPoint]:
-    """Return the points of a run that belong to a curve under a load [N]."""
+    """Return the points that belong to a curve under a given load [N]."""
     return [point for point in points if point.load in (None, load)]
 
 
 def at_speed(points: Sequence[RunPoint], speed: float) -> list[RunPoint]:
-    """Return the points at one speed of a curve."""
+    """Return the points whose speed is within 10 % of a given speed [m/s]."""
     return [
         point
         for point in points
@@ -127,7 +127,7 @@ def at_speed(points: Sequence[RunPoint], speed: float) -> list[RunPoint]:
 
 
 def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointError:
-    """Return the error of a point of a curve.
+    """Return the U95 of a point of a curve with its source, and the errors within and between runs.
 
     Parameters
     ----------
@@ -161,9 +161,9 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
 def describe_point(
     row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint], text: str = ""
 ) -> str:
-    """Return the tooltip of a point of a curve, one line for each item.
+    """Return the tooltip of a point of a curve: speed, µ ± U95, repeats, samples and runs.
 
-    `text` names the component missing from its uncertainty.
+    `text` names a contribution that the uncertainty omits.
     """
     speed, mu = row["sliding_speed_m_s"], row["friction_coefficient"]
     lines = [f"v = {plain_speed(speed)}", f"µ = {error_text(mu, error.size)} (U95, {error.source})"]

@@ -1,4 +1,4 @@
-"""Friction over speed of runs without intervals of constant speed."""
+"""Figure of friction against speed in speed ramps: runs without intervals of constant speed."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from tribolab.report.plain import plain_speed
 MAX_RUNS = 8
 _SPEEDS = "sliding_velocity", "set_speed"
 _BINS_PER_DECADE = 12
-_MIN_SAMPLES = 5  # smallest number of samples of a bin
+_MIN_SAMPLES = 5  # fewest samples in a bin of speed
 _MIN_DECADES = 0.3
 _HEADS = "Ramp", "Mean load", "Speeds", "Highest µ ± U95", "Lowest µ ± U95"
-_SMOOTHED = 50  # intervals in which the sign of acceleration is determined
+_SMOOTHED = 50  # number of intervals in which a run is tested for rising speed
 
 
 class _Leg(NamedTuple):
-    """Part of a ramp in which the speed rises or falls, and its mean load [N]."""
+    """Rising or falling part of a speed ramp as a series, with its mean load [N]."""
 
     series: Series
     load: float | None
 
 
 def has_ramps(run: RunOutcome) -> bool:
-    """Whether a run may consist of ramps only: it was read and has no segment."""
+    """Whether a run may consist of speed ramps only, because it has no segment."""
     return run.done and run.segments == 0 and run.quality not in BAD
 
 
 def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
-    """Return friction over instantaneous speed of runs without constant speed.
+    """Return a figure of friction against instantaneous speed; empty without speed ramps.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
 
 
 def _numbers(legs: Sequence[_Leg]) -> KeyTable:
-    """Return the extremes of each ramp, and first their means over repeats with U95."""
+    """Return a table of highest and lowest µ: means of repeated ramps first, then each ramp."""
     groups: dict[tuple[str, str, bool, float | None], list[_Leg]] = {}
     for leg in legs:
         drawn = leg.series
@@ -86,7 +86,7 @@ def _numbers(legs: Sequence[_Leg]) -> KeyTable:
 
 
 def _row(name: str, legs: Sequence[_Leg]) -> KeyRow:
-    """Return load, range of speed, highest and lowest friction of ramps; means of several."""
+    """Return a row with load, range of speed, highest and lowest µ; means if several ramps."""
     first = legs[0].series
     loads = [leg.load for leg in legs if leg.load is not None]
     speeds = [x for leg in legs for x in leg.series.x]
@@ -103,7 +103,7 @@ def _row(name: str, legs: Sequence[_Leg]) -> KeyRow:
 
 
 def _legs(run: RunOutcome, place: int, file: Path) -> list[_Leg]:
-    """Return the rising and the falling part of a run."""
+    """Return the rising and the falling part of a run, averaged in bins of speed."""
     # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
 
@@ -150,7 +150,7 @@ def _legs(run: RunOutcome, place: int, file: Path) -> list[_Leg]:
 
 
 def _rising(speed: np.ndarray) -> np.ndarray:
-    """Return whether the speed rises at each sample, averaged over intervals."""
+    """Return a mask (time): whether the speed, averaged in intervals, is rising."""
     edges = np.linspace(0, speed.size, min(_SMOOTHED, speed.size) + 1).astype(int)
     means = np.add.reduceat(np.nan_to_num(speed), edges[:-1]) / np.diff(edges)
     return np.repeat(np.gradient(means) > 0, np.diff(edges))

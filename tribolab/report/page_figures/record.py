@@ -1,4 +1,4 @@
-"""Records of live figures, and the stage that makes them if their data changed."""
+"""Making of the page's figures in worker processes; unchanged figures are reused."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.report.page_figures.shown import ShownFigure
 
 
 class Band(NamedTuple):
-    """Speeds [m/s], and lower and upper bound of a model's friction."""
+    """Uncertainty band of a computed curve: speeds [m/s], lower and upper friction."""
 
     speed: list[float | None]
     low: list[float | None]
@@ -26,7 +26,7 @@ class Band(NamedTuple):
 
 @dataclass(frozen=True)
 class PageRecord:
-    """Figures made from data files, and model bands by name of the curve."""
+    """Figures of one subject, and the bands of computed curves by name of the measured curve."""
 
     figures: tuple[ShownFigure, ...] = ()
     bands: dict[str, Band] = field(default_factory=dict)
@@ -34,7 +34,7 @@ class PageRecord:
 
 @dataclass(frozen=True)
 class PageTask:
-    """Figures of one kind to make; `make` takes the results folder and can be pickled."""
+    """Task to make the figures of one subject; `make` takes the results folder."""
 
     name: str
     make: Callable[[Path], PageRecord]
@@ -49,12 +49,12 @@ def page_task(
     files: Sequence[str],
     store: Store,
 ) -> PageTask:
-    """Return a task with the checksum of everything that affects its figures.
+    """Return a task, with a checksum of all that affects its figures.
 
     Parameters
     ----------
     name
-        Kind of figures.
+        Subject of the figures.
     make
         Picklable function that makes the figures.
     shaping
@@ -70,7 +70,7 @@ def page_task(
 
 
 class PageFigures(Recorded[PageTask, PageRecord, Notice]):
-    """Stage of the figures that the page draws."""
+    """Work on the interactive figures of the page: a task for each subject."""
 
     name = "page"
     kind = "live"
@@ -78,9 +78,9 @@ class PageFigures(Recorded[PageTask, PageRecord, Notice]):
 
     @staticmethod
     def work(task: PageTask) -> PageRecord:
-        """Make figures of one kind."""
+        """Return the figures of one subject."""
         return task.make(task.folder)
 
     def failed(self, task: PageTask, error: BaseException) -> Notice:
-        """Return the reason why figures could not be made."""
+        """Return a finding with the reason why figures could not be made."""
         return Notice("error", "", f"figures of {task.name}", explain(error)[0])

@@ -1,4 +1,4 @@
-"""Live figure for the page: its texts, compressed data, and a static picture."""
+"""Interactive figure as the page contains it: texts, compressed data, and a static picture."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from tribolab.records.runs.traces import script_json
 
 @dataclass(frozen=True)
 class ShownFigure:
-    """Live figure in the page.
+    """Interactive figure as the page contains it.
 
     Parameters
     ----------
     id, section, title, note, alt, height, rows
         As in `FigureSpec`.
     surface, medium
-        Common surface and medium; "" for several.
+        Surface and medium of all series; "" if there are several.
     loads
         Selectable loads in words.
     panels, labels
-        Their numbers, which determine the size before drawing.
+        Numbers of panels and legend entries, which determine the size before drawing.
     packed
         Compressed data as text that is valid in a script element.
     still
@@ -53,7 +53,7 @@ class ShownFigure:
 
 
 def shown_figures(figures: Iterable[FigureSpec]) -> tuple[ShownFigure, ...]:
-    """Return the figures for the page; those without series are left out."""
+    """Return the figures in the form that the page contains; figures without data are left out."""
     return tuple(_shown(figure) for figure in figures if figure.series)
 
 

@@ -37,27 +37,27 @@ from tribolab.report.page_figures.waveforms import (
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import lowest_loads
 
-_APART = 1.2  # largest ratio of speeds that count as one
-_EXCERPT = 800  # points of a slow trace
-# line styles of the main and the secondary quantity: in a liquid, and dry, in the same colour
+_APART = 1.2  # a spectrogram needs speeds that differ by more than this factor
+_EXCERPT = 800  # most points of a trace
+# line style of the first and second quantity: (in a liquid, dry)
 _STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
 
 
 def sliding_specs(
     judged: Sequence[Judged], surfaces: Sequence[str], folder: Path
 ) -> list[FigureSpec]:
-    """Return the figures of the section on stick-slip for which there are data.
+    """Return the figures of the section on stick-slip; those without data are empty.
 
     Parameters
     ----------
     judged
         Curves with a sliding mode.
     surfaces
-        Names in the order of the campaign, which sets colours.
+        All surfaces in the order of the campaign, which determines their colours.
     folder
         The results folder with the data files of the runs.
     """
-    # results without traces have no waveforms
+    # a mode without recorded traces has no waveforms
     judged = [contact for contact in judged if any("waveform" in r for r in contact.mode.speeds)]
     colours = _colours(judged, surfaces)
     by_name = {contact.curve.name: contact for contact in judged}
@@ -74,7 +74,7 @@ def sliding_specs(
 
 
 def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int]:
-    """Return the colour of each curve: that of its surface, or its own if that is ambiguous."""
+    """Return the colour of each curve: that of its surface, unless two curves would look alike."""
     curves = [contact.curve for contact in judged]
     # only one load per surface is shown; dry and wet differ in line style
     drawn = {(curve.surface, is_dry(curve.medium), system_of(curve)) for curve in curves}
@@ -86,7 +86,7 @@ def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int
 
 
 class _Opened(NamedTuple):
-    """Data of one condition: traces at the slowest speeds, and stick-slip results."""
+    """Data of one condition, read from its file: slowest traces, and results on stick-slip."""
 
     name: str
     labels: SeriesLabels
@@ -142,7 +142,7 @@ def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Opene
 def _trace(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return friction over sliding distance [um] in the middle of a segment."""
+    """Return sliding distance [um] and friction in a segment without its trimmed ends."""
     time = np.asarray(run["time"], float)
     start, stop = (float(segments[f"trimmed_{end}"][number]) for end in ("start", "stop"))
     inside = np.flatnonzero((time >= start) & (time <= stop))
@@ -158,7 +158,7 @@ def _media(opened: Sequence[_Opened]) -> list[str]:
 
 
 def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
-    """Return the legend of the line styles for the main and the secondary quantity."""
+    """Return a sentence that explains the line styles of two quantities, dry and in a liquid."""
     wet, dry = (
         f"{looked}: {first}; {other_dash}: {second}"
         for looked, other_dash in (("solid line", "dotted"), ("dashed", "dash-dotted"))
@@ -246,7 +246,7 @@ def _events(opened: Sequence[_Opened]) -> FigureSpec:
 
 
 def _spectrogram(opened: Sequence[_Opened]) -> FigureSpec:
-    """Return power relative to noise over speed and frequency; empty for a single speed."""
+    """Return a map of power relative to noise against speed and frequency; empty for one speed."""
     series: list[Series] = []
     low, high = np.inf, 0.0
     for contact in opened:

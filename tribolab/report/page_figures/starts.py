@@ -1,4 +1,4 @@
-"""Static and kinetic friction over the rest time before each start."""
+"""Figure of static and kinetic friction against the hold time before each start."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _HEADS = (
     "Speed",
     "Starts",
 )
-_SAME_REST = 1.05  # largest ratio of rest times that count as equal
+_SAME_REST = 1.05  # rests that differ by at most this factor count as equal
 
 
 class _Start(NamedTuple):
-    """Start of a run, its row and the rest before it [s]."""
+    """One start of sliding: its run, its row of results, and the rest before it [s]."""
 
     outcome: RunOutcome
     row: Row
@@ -40,7 +40,7 @@ class _Start(NamedTuple):
 
 
 def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
-    """Return static and kinetic friction over rest time, of runs that have both."""
+    """Return a figure of static and kinetic friction against hold time; empty without starts."""
     chosen = [(run.outcome, rows) for run in runs if (rows := starts_of(run))]
     if not chosen:
         return []
@@ -87,7 +87,7 @@ def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
 
 
 def _numbers(chosen: Sequence[tuple[RunOutcome, Sequence[Row]]]) -> KeyTable:
-    """Return static and kinetic friction after each rest; repeats are averaged."""
+    """Return a table of static and kinetic friction, averaged over starts after equal rests."""
     groups: dict[tuple[str, str, float, float], list[_Start]] = {}
     starts = [
         _Start(outcome, row, number_of(row, "waiting_time_s") or 0.0)
@@ -107,9 +107,9 @@ def _system(start: _Start) -> tuple[str, str, float]:
 
 
 def _mean_of_starts(group: Sequence[_Start], name: str) -> str:
-    """Return the mean of a quantity ± U95, which is at least that of one start.
+    """Return text with the mean of a quantity over several starts, and its U95.
 
-    Starts share the zero, so that averaging does not reduce its error.
+    U95 is at least that of one start, because all starts share the error of the zero.
     """
     values, own = (_known(number_of(s.row, name + end) for s in group) for end in ("", "_sem"))
     if not values.size:
@@ -121,7 +121,7 @@ def _mean_of_starts(group: Sequence[_Start], name: str) -> str:
 
 
 def _mean_row(group: Sequence[_Start]) -> KeyRow:
-    """Return the means of starts after the same rest."""
+    """Return the row of the table for starts after equal rests: mean static and kinetic µ."""
     first = group[0].outcome
     speeds = _known(number_of(start.row, "sliding_speed_m_s") for start in group)
     cells = (

@@ -1,4 +1,4 @@
-"""Figures of surfaces and their contact, from the data files of a campaign."""
+"""Figures of the sections on surfaces and contact, from the data files of a campaign."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class _Opened:
-    """Surfaces of a campaign with results, their order, which sets colours, and their folder."""
+    """Surfaces that have results, with the results folder from which their data are read."""
 
     def __init__(
         self, surfaces: Sequence[SurfaceOutcome], order: Sequence[str], folder: Path
@@ -31,7 +31,7 @@ class _Opened:
         self.folder = folder
 
     def read(self, group: str) -> dict[str, xr.Dataset]:
-        """Return a group of all surfaces that have it, by name."""
+        """Return one group of data by name of the surface, for surfaces that have this group."""
         return {
             surface.name: read_data(self.folder / surface.data_file, group=group)
             for surface in self.surfaces
@@ -39,14 +39,14 @@ class _Opened:
         }
 
     def loads(self) -> xr.Dataset | None:
-        """Return the loads of the surface with most loads, whose Hertz pressures are marked."""
+        """Return the loads at which Hertz pressures are marked: those of the surface with most."""
         return max(self.read("loads").values(), key=lambda one: one.sizes["load"], default=None)
 
 
 def surface_specs(
     surfaces: Sequence[SurfaceOutcome], order: Sequence[str], alone: bool, folder: Path
 ) -> list[FigureSpec]:
-    """Return the figures of the sections on surfaces and contact for which there are data.
+    """Return the figures of the sections on surfaces and contact, if there are data for them.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def _profiles(opened: _Opened) -> FigureSpec:
 
 
 def _modulus(opened: _Opened) -> FigureSpec | None:
-    first = next(iter(opened.read("modulus").items()), None)  # all surfaces have the same rubber
+    first = next(iter(opened.read("modulus").items()), None)  # any surface: the rubber is the same
     if first is None:
         return None
     spec = rough.modulus.spec(first[1].assign_attrs(surface=first[0]))

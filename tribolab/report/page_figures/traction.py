@@ -1,4 +1,4 @@
-"""Measured and computed friction over the slide-roll ratio, for two moving bodies."""
+"""Figures of measured and computed friction against slide-roll ratio (both bodies move)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MU, _RATIO, _ROLLING = "friction_coefficient", "slide_roll_ratio", "rolling_spe
 
 
 def traction_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return a figure for each surface and medium with traction curves."""
+    """Return a figure of friction against slide-roll ratio for each surface and medium."""
     figures = []
     for place, ((surface, medium), curves) in enumerate(systems(known).items(), start=1):
         series = [s for curve in curves for s in _series(known, curve)]
@@ -38,7 +38,7 @@ def traction_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
 
 
 def _series(known: FrictionOverSpeed, curve: CurveRecord) -> list[Series]:
-    """Return the measured traction points of a curve, and the model's lines."""
+    """Return measured friction against slide-roll ratio, and the model, per entrainment speed."""
     model = known.models.get(curve.outcome.name)
     found = []
     for number, (speed, rows) in enumerate(_by_speed(curve.traction).items()):
@@ -59,7 +59,7 @@ def _percent(rows: Sequence[Row]) -> list[float]:
 
 
 def _by_speed(rows: Sequence[Row]) -> dict[float, list[Row]]:
-    """Return the rows of each entrainment speed [m/s]."""
+    """Return rows grouped by entrainment speed [m/s]."""
     found: dict[float, list[Row]] = {}
     for row in rows:
         found.setdefault(float(number_of(row, _ROLLING) or 0.0), []).append(row)

@@ -1,4 +1,4 @@
-"""Waveform and dominant frequency of friction at each sliding speed."""
+"""Figures of the waveform and the dominant frequency of friction at each sliding speed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _STEADY = frozenset({"smooth sliding", _UNDECIDED})
 
 
 class Judged(NamedTuple):
-    """Measured curve, its sliding mode, and its slowest segments; None without any."""
+    """A measured curve, its sliding mode, and its slowest segments (None if it has none)."""
 
     curve: CurveOutcome
     mode: ModeRecord
@@ -32,7 +32,7 @@ class Judged(NamedTuple):
 
 
 def system_of(curve: CurveOutcome) -> str:
-    """Return the surface and medium of a curve as one name."""
+    """Return the surface and medium of a curve as one name; without both, its runs."""
     return system_name(curve.surface, curve.medium, curve.run_names)
 
 
@@ -43,7 +43,7 @@ def condition_of(curve: CurveOutcome) -> str:
 
 
 def waveform_spec(judged: Sequence[Judged]) -> FigureSpec:
-    """Return the waveform of each curve at every speed."""
+    """Return a map of the waveform of each condition at each speed; empty without data."""
     if not judged:
         return FigureSpec()
     curves = {condition_of(contact.curve): _waveform_curve(contact) for contact in judged}
@@ -60,7 +60,7 @@ def waveform_spec(judged: Sequence[Judged]) -> FigureSpec:
 
 
 def _waveform_curve(contact: Judged) -> xr.Dataset:
-    """Return the waveforms of a curve as a dataset for the figures."""
+    """Return the waveforms and drops of a curve as a dataset (sliding_speed), for the map."""
     rows = contact.mode.speeds
     drops = [np.nan if row["drop"] is None else row["drop"] for row in rows]
     columns = {
@@ -100,7 +100,7 @@ def _waveform_tooltip(contact: Judged, row: Mapping[str, Any]) -> str:
 
 
 def frequency_spec(judged: Sequence[Judged], colours: Mapping[str, int]) -> FigureSpec:
-    """Return the figure of the strongest oscillation frequency over sliding speed."""
+    """Return a figure of the frequency of the strongest oscillation against sliding speed."""
     series = []
     for contact in judged:
         rows = [row for row in contact.mode.speeds if row["dominant_frequency_Hz"]]
