@@ -181,8 +181,8 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     others = max(values.size - longest, 1)
     if runs == 1:
         return uniform(values.size, SUSPECT)  # the whole signal is constant
-    # a signal quantised more coarsely than its noise often repeats values: the length that 99 %
-    # of the sequences do not exceed is usual
+    # a signal quantised more coarsely than its noise often repeats values, so that the 99 %
+    # quantile of the lengths of equal values is usual
     usual = _quantile(equal.lengths, equal.counts, 0.99)
     repeat = max((others - (runs - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))

@@ -7,14 +7,14 @@ import xarray as xr
 
 from tribolab.surface.gaps import bridge_gaps, gaps_in
 
-_MAX_POINTS = 8192  # points per profile at most: a dominant wave needs several points per period
-_BLOCK = 256  # number of map rows whose slopes are computed at a time
-_MAX_ROWS = 512  # map rows used at most; the mean power of a spectral line is then accurate to 6 %
+_MAX_POINTS = 8192  # most points used per profile: a dominant wave needs several points per period
+_BLOCK = 256  # map rows whose slopes are computed at a time
+_MAX_ROWS = 512  # most map rows used; the mean power of a spectral line is then accurate to 6 %
 _PERIODS = 12  # fewest periods of a wave in a scan; up to six periods can arise by chance
 _LOBE = 2  # spectral lines on each side over which a Hann window spreads a wave
 _DOMINANT = 0.55  # share of the mean square height that no single wave of a random surface reaches
 _NEIGHBOURS, _EXCLUDED = 24, 4  # lines on each side for the background level, nearest ones excluded
-_CHANCE = 1e-6  # accepted probability that a line of random heights exceeds its background so far
+_CHANCE = 1e-6  # accepted probability that random heights cause such a line
 _MAX_SLOPE_RATIO = 0.4  # ratio of rms slopes along and across the lay; smooth maps reach 0.6
 
 
@@ -29,7 +29,7 @@ def self_affinity_objection(scans: xr.Dataset) -> str:
     Returns
     -------
     str
-        Part of a sentence; empty if the surface can be self-affine.
+        The reason, as part of a sentence; "" if the surface can be self-affine.
 
     Notes
     -----
@@ -104,13 +104,15 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
     Returns
     -------
     tuple
-        0 and NaN if there is none. Feed marks and chatter repeat; roughness does not.
+        Share and wavelength; 0 and NaN without such a wave. Feed marks and chatter repeat,
+        roughness does not.
 
     Notes
     -----
-    A line of the spectrum, of at least 48 periods, over the medians on both sides. Of random
-    heights a line exceeds their mean r times with the chance exp(-r); of all lines together it is
-    kept below 1e-6. Some 2 in 1000 simulated self-affine profiles are reported.
+    A line of the spectrum, of at least 48 periods, is compared with the median power on both sides.
+    With random heights a line exceeds the mean power r times with the probability exp(-r), which is
+    kept below 1e-6 for all lines together. Some 2 in 1000 simulated self-affine profiles are
+    reported.
     """
     power, length = _power_of(rows, pitch)
     total = float(power.sum())
@@ -120,7 +122,7 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
     windows = np.lib.stride_tricks.sliding_window_view(power, _NEIGHBOURS - _EXCLUDED)
     middle = np.median(windows, axis=1)
     left, right = middle[inner - _NEIGHBOURS], middle[inner + _EXCLUDED + 1]
-    # background: geometric mean of both sides if the spectrum falls, else the right side alone
+    # the background is the geometric mean of both sides if the spectrum falls, else the right side
     usual = np.where(left >= right, np.sqrt(left * right), right) / np.log(2)
     ratio = power[inner] / np.where(usual > 0, usual, np.inf)
     best = int(np.argmax(ratio))

@@ -49,7 +49,7 @@ _UNKNOWN = PowerLaw(*[float("nan")] * 5)
 
 
 class _Part(NamedTuple):
-    """Section of a spectrum; its band is relative to the values (2, wavenumber)."""
+    """Section of a spectrum, with lower and upper 95 % limits over C (2, wavenumber)."""
 
     wavenumber: np.ndarray
     value: np.ndarray
@@ -94,7 +94,7 @@ def extrapolate(
         ``psd_2d`` with its band from `q_low` to `q_high`, and ``origin``: 0 measured, 1
         extrapolated to small, 2 to large wavenumbers. Attributes ``hurst_exponent`` and its
         standard error, ``fit_low_1_m``, ``fit_high_1_m``, ``rolloff_wavenumber_1_m`` and
-        ``rolloff`` (found or not); ``not_self_affine`` gives a reason against the power law.
+        ``rolloff`` (found or not); ``not_self_affine`` is a reason not to use the power law.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
-    rough = _is_surface_law(law)  # otherwise the spectrum was not extended by the power law
+    rough = _is_surface_law(law)  # otherwise the power law was not used
     attrs = {
         **kept,
         "hurst_exponent": law.hurst if rough else float("nan"),
@@ -227,7 +227,7 @@ def _grid(low: float, high: float) -> np.ndarray:
 
 
 def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
-    """Return the lower and upper limit of the 95 % band divided by C; 1 without a band."""
+    """Return lower and upper limit of the 95 % band, divided by C; both are 1 without a band."""
     if "psd_2d_low" not in psd:
         return np.ones((2, c.size))
     band = np.stack([psd.psd_2d_low.values, psd.psd_2d_high.values])
@@ -261,7 +261,7 @@ def _fit(
     for _ in range(20):
         law = _regress(q, c, error, low, high)
         rolloff = _crossing(law, c[0])
-        # wherever the roll-off lies, the fit keeps at least four points
+        # the fit keeps at least four points, wherever the roll-off is
         new = min(max(floor, float(q[0]), _ABOVE_ROLLOFF * rolloff), float(q[-min(4, q.size)]))
         if abs(new - low) <= 1e-9 * low:
             break

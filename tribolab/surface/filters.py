@@ -74,7 +74,7 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
             function="gaussian_filter",
         )
     height = scans.height.transpose(..., "x")
-    # the filter is cut off where its weight is 5e-14 of the maximum
+    # weights below 5e-14 of the maximum are left out
     reach = min(int(np.ceil(1.5 * cutoff / pitch)), x.size - 1)
     at = pitch * np.arange(-reach, reach + 1)
     weights = np.exp(-np.pi * (at / (_ALPHA * cutoff)) ** 2)

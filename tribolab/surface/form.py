@@ -11,7 +11,7 @@ from tribolab.surface.gaps import bridge_gaps
 from tribolab.surface.level import rounding_only
 from tribolab.units.stamping import stamp
 
-# Polynomial order equivalent to each form: removing the form removes as many of the longest waves.
+# polynomial order equivalent to each form, i.e. number of longest waves that it removes
 _FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
 _STEPS = 60
 _NO_CIRCLE = Cure(
@@ -71,7 +71,7 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
 
 
 def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> xr.Dataset:
-    """Return scans without their form (tilt, circle, polynomial), and record what was removed.
+    """Return scans without their form (tilt, circle, polynomial), which is added as variables.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     The circle of curvature c through (0, z0) with sin(tilt) = s:
     ``z = z0 + x (2 s + c x) / (sqrt(1 - s^2) + sqrt(1 - (s + c x)^2))``, which is a straight line
     for c = 0 and not a parabola otherwise: 25 mm along a cylinder of 7 cm differ from one by 9 um.
-    Least squares by Gauss-Newton with the Jacobian of the parabola, all scans at a time.
+    It is fitted by Gauss-Newton steps with the Jacobian of the parabola, all scans at a time.
 
     Examples
     --------
@@ -184,7 +184,7 @@ def _remove_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def _least_squares(rows: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Return the least-squares coefficients (row, term) of a polynomial basis; NaN is left out."""
+    """Return least-squares coefficients of a polynomial basis (row, term), ignoring NaN."""
     if np.isfinite(rows).all():
         # the normal equations of Legendre polynomials are well conditioned
         return np.linalg.solve(basis.T @ basis, (rows @ basis).T).T

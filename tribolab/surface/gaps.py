@@ -16,10 +16,11 @@ from tribolab.core.errors import AnalysisError
 
 _TRIALS = 16  # number of random positions at which the gaps are placed
 _MAX_MISSING = 0.5  # largest share of missing heights with which a scan is evaluated
-_FEW_MISSING = 8  # up to so many missing heights at an end are filled with the nearest height
+_FEW_MISSING = 8  # up to this many missing heights at an end are filled with the nearest height
 _STUDENT = 1.087  # 97.5 % quantile of Student's t (15 degrees of freedom) over the normal one
 _NORMAL = 1.96
-_SHIFT_SHARE = 0.3  # share of the correction added to its error, because gaps do not lie at random
+# share of the correction added to the error, because gaps do not occur at random
+_SHIFT_SHARE = 0.3
 _MAX_FACTOR = float(np.log(2.0))  # change of ln(power) above which gaps dominate a result
 
 
@@ -76,7 +77,7 @@ def bridge_gaps(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.
     height
         Heights [m]; values inside gaps are ignored.
     missing
-        Truth, like the heights.
+        Mask of missing heights, in the shape of the heights.
     is_map
         Whether the last two dimensions are a map.
 
@@ -145,7 +146,7 @@ def gap_effect(
     height
         Bridged heights [m] (scan, x) or (scan, y, x).
     missing
-        Truth, like the heights.
+        Mask of missing heights, in the shape of the heights.
     measure
         Computes the result from heights; results with a relative error give their logarithm.
     is_map
@@ -159,7 +160,7 @@ def gap_effect(
     Returns
     -------
     GapEffect
-        Of the shape that `measure` gives.
+        Effect on each result, in the shape that `measure` returns.
 
     Raises
     ------
@@ -204,7 +205,7 @@ def gap_effect(
         else (np.array(1.0 / (1.0 - share)), np.array(1.0))
     )
     shift = every.mean(axis=0) * grow
-    # a gap at the highest peak gives longer tails than the normal distribution has
+    # gaps at the highest peak cause longer tails than those of a normal distribution
     farthest = np.abs(every - every.mean(axis=0)).max(axis=0) / _NORMAL
     scatter = np.maximum(_STUDENT * every.std(axis=0, ddof=1), farthest)
     error = np.hypot(np.sqrt(1.0 + 1.0 / _TRIALS) * widen * scatter, _SHIFT_SHARE * shift)
@@ -240,7 +241,7 @@ def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
 def _window_factors(
     missing: np.ndarray, left: np.ndarray, logarithms: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return corrections for overlapping gaps: of mean change (result, scan), of scatter (scan)."""
+    """Return corrections for overlapping gaps: of the change (result, scan) and the scatter (scan)."""
     there = 1.0 - missing.mean(axis=1)
     lost = np.log(np.maximum(left, 1.0 / missing.shape[1]) / there).mean(axis=0)
     fresh = (there - left).mean(axis=0) / np.where(there < 1.0, 1.0 - there, 1.0)
@@ -255,7 +256,7 @@ def _window_factors(
 def _move_gaps(
     missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the gaps of each scan at random new positions, and their original rows (scan, y)."""
+    """Return each scan's gaps at random other positions, and the rows they come from (scan, y)."""
     moved = np.empty_like(missing)
     came = np.empty(missing.shape[:2], dtype=int)
     for scan, gaps in enumerate(missing):

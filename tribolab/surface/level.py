@@ -9,8 +9,8 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError
 
-# A deviation below this share of the largest height is rounding: floats have 16 digits, and
-# the form fit loses a few of them; the best instruments resolve 8.
+# Smaller deviations, relative to the largest height, are rounding errors: floats have 16 digits,
+# of which the form fit loses a few; the best instruments resolve 8.
 _ROUNDING = 1e-12
 _CHUNK = 1 << 20
 
@@ -23,7 +23,7 @@ def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
     deviation
         Heights [m] (row, ...) after form removal; NaN is ignored.
     heights
-        The heights [m] (row, x) themselves.
+        The measured heights [m] (row, x), whose size determines the rounding errors.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def refuse_level(who: str, scans: xr.Dataset, level: Sequence[bool] | np.ndarray
     scans
         The scans, for their names.
     level
-        Truth (scan).
+        Mask of the scans without roughness (scan).
 
     Raises
     ------

@@ -93,7 +93,7 @@ def _integral(
     order: float,
     linear: np.ndarray,
 ) -> np.ndarray:
-    """Return the integral of q^order C from a to b, for C a power law or, if `linear`, a line."""
+    """Return the integral of q^order C from a to b; C is a power law, or a line if `linear`."""
     width = np.log(b / a)
     g = a ** (order + 1) * left
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -176,7 +176,7 @@ def refine_nodes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the spectrum with nodes added until there are `per_decade` of them per decade.
 
-    The moments do not change; quantities at the nodes (a gap, a modulus) are resolved better.
+    The moments do not change; quantities computed at the nodes (a gap, a modulus) gain resolution.
     Bins next to a zero, where C is linear in q, are not divided.
     """
     pieces = np.ceil(np.diff(np.log10(q)) * per_decade - 1e-9).astype(int).clip(1)

@@ -18,7 +18,8 @@ from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
 STANDARD_CUTOFF = 0.8e-3  # m, default cut-off for most surfaces (ISO 21920-3)
-_LENGTHS = 5  # a shorter profile is evaluated with a cut-off of its length divided by this
+# sampling lengths in a profile; the cut-off of a shorter profile is its length over this
+_LENGTHS = 5
 _MIN_LENGTHS = 3  # fewest sampling lengths that give the standard error of their mean
 
 
@@ -37,11 +38,11 @@ def roughness_parameters(
         ``height`` [m] (..., x) without form. Missing heights (NaN) are bridged, and the results
         are corrected for them; missing ends of profiles are cut off.
     lambda_c
-        Long-wave cut-off [m] or text; None leaves long waves in. ``"auto"``: nothing for a
+        Long-wave cut-off [m] or text; None keeps long waves. ``"auto"``: None for a
         profile that the instrument filtered (attribute ``lambda_c_m``), else the standard 0.8 mm,
         or a fifth of a shorter profile.
     lambda_s
-        Short-wave cut-off; None leaves short waves in. ``"auto"``: nothing.
+        Short-wave cut-off; None or ``"auto"`` keeps short waves.
     sampling_lengths
         True: Ra, Rq, Rsk, Rku are means over whole sampling lengths of one lambda_c (ISO 4287,
         as in most instruments); False: they are computed over the whole evaluation length
@@ -157,7 +158,7 @@ class _Evaluation(NamedTuple):
         return int(round(0.5 * self.cut / self.pitch)) if self.cut and not self.filtered else 0
 
     def lengths(self, points: int) -> tuple[float, int]:
-        """Return the evaluation length [m] for a number of points, and its sampling lengths."""
+        """Return the evaluation length [m] of some points, and its number of sampling lengths."""
         length = (points - 2 * self.edge) * self.pitch
         return length, 5 if self.cut is None else max(1, int(round(length / self.cut - 0.25)))
 
@@ -189,7 +190,7 @@ class _Evaluation(NamedTuple):
         rows = self.profile(scans)
         parts = self.parts(rows)
         deviation = parts if self.sampling and cut is not None else rows[..., None, :]
-        if cut is None:  # without a filter, the mean height is the reference line
+        if cut is None:  # without a filter, the reference line is at the mean height
             deviation = deviation - deviation.mean(-1, keepdims=True)
         slope = _slope(rows, pitch)
         given = scans.height.transpose(..., "x").values.reshape(-1, points)
@@ -251,7 +252,7 @@ def _correct_gaps(
     rows = data["Ra"].shape
     for number, name in enumerate(list(data)):
         shift, error = effect.shift[number].reshape(rows), effect.error[number].reshape(rows)
-        if name == "Rz":  # gaps seldom hide the highest peak, but if they do, Rz changes a lot
+        if name == "Rz":  # gaps seldom hide the highest peak, but then Rz changes a lot
             error = np.full_like(error, error.max())
         if factors[number]:
             data[name] = data[name] * np.exp(-shift)
@@ -267,7 +268,7 @@ def _correct_gaps(
 def _correct_tails(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
-    """Replace Rsk and Rku by those of the measured heights if a gap is long."""
+    """Return parameters with Rsk and Rku from measured heights only, if a gap is long."""
     rows = evaluation.profile(scans)
     edge, points = evaluation.edge, missing.shape[-1]
     parts = evaluation.parts(rows.reshape(-1, rows.shape[-1]))

@@ -25,8 +25,8 @@ def spectral_roughness(psd: xr.Dataset) -> xr.Dataset:
     -------
     xarray.Dataset
         ``rms_roughness`` [m], ``rms_slope`` [1], ``rms_curvature`` [1/m] of all waves up to each
-        ``wavenumber``; the last value is the whole. With a band, ``..._low`` and ``..._high``:
-        outer bounds, as if all points had errors of the same sign.
+        ``wavenumber``; the last value includes all waves. With a band, ``..._low`` and
+        ``..._high``: outer bounds, as if all points had errors of the same sign.
 
     Notes
     -----

@@ -17,8 +17,9 @@ from tribolab.friction.zero.of_run import PAIRED
 from tribolab.units.stamping import stamp
 
 DECISIONS = "decisions"  # attribute: decisions as plain data, with the segments they concern
-_MORE_THAN = 0.5  # share of the decision's interval in the segment it concerns
-_SHOWN = 3  # segments listed if none was found
+# a decision concerns the segment that contains more than this share of its interval
+_MORE_THAN = 0.5
+_SHOWN = 3  # nearest segments listed in the message if a decision finds none
 DECISION_WORDS = {REJECT: "rejected", ACCEPT: "accepted", NEW_BOUNDS: "new bounds", NOTE: "noted"}
 
 
@@ -103,7 +104,7 @@ def decide(
 
 
 def remove_decisions(data: xr.Dataset) -> xr.Dataset:
-    """Return segments, or a result on them, without the marks of `decide`.
+    """Return segments, or their friction, without the variables and attribute added by `decide`.
 
     It undoes notes and acceptance; rejection and new bounds change numbers and cannot be undone.
     """
@@ -121,7 +122,7 @@ def _affected_segments(segments: xr.Dataset, decision: Decision) -> list[int]:
         places = [_find_segment(segments, decision, *decision.interval)]
     if "omitted" in segments.dims or decision.action not in (REJECT, NEW_BOUNDS):
         return places
-    # results cannot be recomputed without the signals
+    # a friction result has no signals from which it could be computed again
     if decision.action == NEW_BOUNDS:
         raise _refused(segments, decision, "new bounds need the friction to be computed again")
     if len(places) < len(every) and SegmentAttributes.from_attrs(segments.attrs).offset in PAIRED:

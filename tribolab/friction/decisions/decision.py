@@ -25,7 +25,7 @@ class Decision:
         ``"reject"``: exclude from curves. ``"accept"``: include in spite of objections of checks.
         ``"bounds"``: change the start or end of the segment. ``"note"``: a remark.
     reason
-        Reason.
+        Reason of the decision.
     author
         Person who decided.
     date
@@ -69,12 +69,12 @@ class Decision:
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """Interval of the run's time [s] that identifies the segment; None: the whole run."""
+        """Interval of the run's time [s] that identifies the segment; None for the whole run."""
         return None if self.start is None or self.stop is None else (self.start, self.stop)
 
     @property
     def moves_numbers(self) -> bool:
-        """Whether friction may change; not for notes and acceptance."""
+        """Whether the decision may change friction, as a rejection or new bounds do."""
         return self.action in (REJECT, NEW_BOUNDS)
 
     def __str__(self) -> str:

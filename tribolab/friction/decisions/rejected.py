@@ -1,4 +1,4 @@
-"""Rejected segments: which they are, and results with and without them.
+"""Mask of the segments that a person rejected, and results with and without them.
 
 Rejected segments stay in every dataset, marked by ``rejected``, so that they can be shown.
 Functions that combine segments exclude them by `kept`.
@@ -44,7 +44,7 @@ def kept(data: xr.Dataset) -> xr.Dataset:
 
 
 def compute_both(segments: xr.Dataset, compute: Callable[[xr.Dataset], xr.Dataset]) -> xr.Dataset:
-    """Compute results of accepted segments without the rejected ones, and add the latter.
+    """Return results of all segments, of which those not rejected are computed on their own.
 
     A stroke that slipped off the sample must not affect the zero of its neighbours; its own result
     is added for display.

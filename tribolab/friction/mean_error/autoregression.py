@@ -20,7 +20,7 @@ class Models(NamedTuple):
 
 
 def burg(records: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray]:
-    """Fit models of every order up to the highest.
+    """Fit autoregressive models of every order up to the highest, by Burg's method.
 
     Parameters
     ----------
@@ -69,9 +69,9 @@ def spectra_of(records: np.ndarray, frequencies: np.ndarray, highest: int = 20) 
     Parameters
     ----------
     records
-        (record, sample); their means are removed here.
+        Records (record, sample); their means are removed here.
     frequencies
-        In cycles per record (frequency), or (record, frequency) if records differ.
+        Frequencies in cycles per record (frequency), or (record, frequency) if records differ.
     highest
         Highest order.
 

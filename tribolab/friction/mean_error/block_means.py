@@ -16,7 +16,7 @@ _BLOCK_LENGTHS = 25
 def error_from_blocks(
     signal: xr.DataArray | np.ndarray, lengths: Sequence[int] | np.ndarray | None = None
 ) -> xr.Dataset:
-    """Return the standard error of a signal's mean from the scatter of the means of blocks.
+    """Return the standard error of a signal's mean, from the scatter of its block means.
 
     Parameters
     ----------
@@ -39,7 +39,8 @@ def error_from_blocks(
 
     Notes
     -----
-    The standard deviation of n block means over sqrt(n), known within 1/sqrt(2 (n - 1)) [1]_.
+    The error is the standard deviation of n block means over sqrt(n), known within 1/sqrt(2 (n -
+    1)) [1]_.
 
     References
     ----------

@@ -12,8 +12,8 @@ from scipy.fft import dct
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import sieve_of
 
-LINE = 0.0  # denotes a line among the time constants of exponentials
-_COURSE_TIMES = np.concatenate([[LINE], np.geomspace(0.02, 1.0, 12)])  # of the record
+LINE = 0.0  # stands for a line in lists of time constants of exponentials
+_COURSE_TIMES = np.concatenate([[LINE], np.geomspace(0.02, 1.0, 12)])  # as shares of the record
 
 
 def shape_of(time: float, count: int) -> np.ndarray:
@@ -66,7 +66,7 @@ def line_through(records: np.ndarray) -> LineFit:
 def _error_of_size(
     rest: np.ndarray, shapes: np.ndarray, fitted: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return a fitted shape's standard error from the residuals, and its freedom (record)."""
+    """Return the standard error of a fitted trend, and its degrees of freedom (record)."""
     count = rest.shape[1]
     sieve = sieve_of(rest, fitted)
     cosines = dct(shapes, norm="ortho", axis=1)[:, 1:]

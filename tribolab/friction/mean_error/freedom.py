@@ -1,4 +1,4 @@
-"""Degrees of freedom of a standard error, which together make U95."""
+"""Conversion between U95 and a standard error with its degrees of freedom."""
 
 from __future__ import annotations
 
@@ -52,5 +52,5 @@ def with_freedom(sem: np.ndarray, u95: np.ndarray) -> StandardError:
 
 
 def coverage_of(dof: float) -> float:
-    """Return U95 over the standard error, of a mean with some degrees of freedom."""
+    """Return the ratio of U95 to the standard error, for given degrees of freedom."""
     return NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975))

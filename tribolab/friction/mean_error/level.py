@@ -57,7 +57,8 @@ def levels_of(records: np.ndarray) -> Levels:
     size = records.std(axis=1, keepdims=True)
     moved = size[:, 0] > 1e-12 * np.abs(mean[:, 0])
     scaled = (records - mean) / np.where(moved[:, None], size, 1.0)
-    scaled[~moved] = np.where(np.arange(samples) % 2, 1.0, -1.0)  # any values: their error is zero
+    # arbitrary values, because the error of a constant record is zero
+    scaled[~moved] = np.where(np.arange(samples) % 2, 1.0, -1.0)
     lines = lines_of(scaled)
     calm = without_lines(scaled, lines)
     courses = courses_of(_coarse(calm))
@@ -112,7 +113,7 @@ def _coarse(records: np.ndarray) -> np.ndarray:
 def _fit(
     record: np.ndarray, lines: list[float], courses: list[float]
 ) -> tuple[list[float], list[float], np.ndarray]:
-    """Fit all terms, and all but the trends: level, its sensitivity and residuals; two of each."""
+    """Return level, sensitivity and residuals of a fit with trends, and of one without."""
     samples = record.size
     ones = np.ones((samples, 1))
     waves = [waves_of(cycles, samples) for cycles in lines]

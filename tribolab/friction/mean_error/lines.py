@@ -18,7 +18,7 @@ _GAIN_OFF_GRID = 1.02  # largest gain in power of the best frequency over the be
 
 
 class _Grid(NamedTuple):
-    """Frequencies [cycles per record]; waves orthogonal to a straight line (frequency, 2, n)."""
+    """Trial frequencies [cycles per record], and their waves minus a line (frequency, 2, n)."""
 
     cycles: np.ndarray
     waves: np.ndarray
@@ -83,14 +83,14 @@ def lines_of(records: np.ndarray) -> list[list[float]]:
 
 
 def _strongest(rest: np.ndarray, grid: _Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Return the place of the strongest wave of each record, and its coefficients (record, 2)."""
+    """Return the grid index of each record's strongest wave, and its coefficients (record, 2)."""
     size = np.einsum("fcn,rn->rfc", grid.waves, rest, optimize=True)
     place = (size**2).sum(axis=2).argmax(axis=1)
     return place, size[np.arange(len(rest)), place]
 
 
 def _may_have_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
-    """Return whether the strongest wave on the grid exceeds half the limit (record)."""
+    """Return a mask of records whose strongest wave on the grid exceeds half the limit (record)."""
     if not len(rest):
         return np.zeros(0, bool)
     place, size = _strongest(rest, grid)
@@ -100,7 +100,7 @@ def _may_have_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
     over = _GAIN_OFF_GRID * (size**2).sum(axis=1) / 2 / np.maximum(noise, 1e-300)
     few = at < limits.FEW_CYCLES.value + _FREQUENCY_STEP
     enough = np.where(few, limits.SLOW_LINE_OVER_NOISE.value, limits.LINE_OVER_NOISE.value)
-    # the noise near a line is estimated lower if the line is fitted better
+    # half, because a better fit of the line lowers the estimated noise near it
     return over > 0.5 * enough
 
 
@@ -133,7 +133,7 @@ def _fit_next_line(
 
 
 def _refine_frequency(rest: np.ndarray, base: np.ndarray, middle: float) -> float:
-    """Return the frequency of the wave that explains most of the rest, by golden-section search."""
+    """Return the frequency of the wave with the smallest residuals, by golden-section search."""
 
     def taken(cycles: float) -> float:
         own = waves_of(cycles, rest.size)

@@ -39,7 +39,7 @@ _OUTSIDE_COVERAGE = 0.05
 
 
 class _Shapes(NamedTuple):
-    """Models: variances of the cosines (model, cosine) and of the mean (model), log prior."""
+    """Variances that each drift model gives the cosines and the mean, and its log prior (model)."""
 
     cosines: np.ndarray
     mean: np.ndarray
@@ -77,11 +77,11 @@ def errors_of_means(
     Parameters
     ----------
     rest
-        Records without oscillations and courses (record, sample), of at least three samples.
+        Records minus oscillations and trends (record, sample), of at least three samples.
     lines
         Cycles of the oscillations fitted to each record: cosines near them are not used.
     courses
-        Number of trends fitted to each record: as many of the lowest cosines are not used.
+        Number of trends fitted to each record; that many of the lowest cosines are not used.
     """
     count, samples = rest.shape
     most = min(int(limits.COSINES.value), samples - 1)

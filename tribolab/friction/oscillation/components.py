@@ -11,10 +11,10 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.oscillation import gather
 from tribolab.friction.oscillation.spectrum.survey import Survey
 
-_MAX_HARMONIC = 16  # highest harmonic that is examined individually
-# frequency ratios of the bins around a line that define its surroundings
+_MAX_HARMONIC = 16  # highest harmonic that is examined on its own
+# ratios of frequency to that of a line, between which its surroundings lie
 _SURROUNDINGS = (1.15, 1.5)
-_WINDOW_BINS = 0.8  # bins, width of a line due to the window
+_WINDOW_BINS = 0.8  # width of a line due to the window, in bins
 
 
 class Component(NamedTuple):
@@ -104,14 +104,14 @@ def _spread(seen: Survey, level: np.ndarray, frequency: float) -> float:
     if not weight.sum() > 0:
         return 0.0
     variance = (f[near] - frequency) ** 2 @ weight / weight.sum()
-    # the width due to the window is subtracted
+    # minus the width due to the window
     return float(np.sqrt(max(variance - (_WINDOW_BINS * seen.fine.width[0]) ** 2, 0.0)))
 
 
 def _harmonics(
     seen: Survey, level: np.ndarray, frequency: float, own: float, spread: float
 ) -> np.ndarray:
-    """Return a mask of bins of a line's harmonics that are no stronger than a sawtooth's (bin)."""
+    """Return a mask of the bins of a line's harmonics, if no stronger than in a sawtooth (bin)."""
     f = seen.fine.frequency
     width = float(seen.fine.width[0])
     excess = np.maximum(seen.fine.power - level, 0) * seen.fine.width

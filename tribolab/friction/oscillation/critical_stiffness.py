@@ -26,7 +26,7 @@ def critical_stiffness(
     load: np.ndarray | float,
     cycles: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and highest critical stiffness [N/m] that cycles of stick-slip allow.
+    """Return lower and upper bounds of the critical stiffness [N/m] from cycles of stick-slip.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def critical_stiffness(
     Returns
     -------
     tuple of ndarray
-        The highest is infinite if creep is too small to bound it: the rig is far too soft.
+        Both bounds. The upper one is infinite if creep is too small: the rig is far too soft.
 
     Notes
     -----

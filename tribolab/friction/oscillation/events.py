@@ -9,20 +9,22 @@ import numpy as np
 from tribolab.arrays.medians import medians_of_rows
 from tribolab.friction.oscillation import limits
 
-_LOADING_PART = (0.08, 0.92)  # part of a stick in which the loading rate is determined
-_LOADING_CELLS, _SLOPE_CELLS = 48, 16  # number, and cells per window: fewer add noise
+# interval of a stick, from 0 to 1, in which the loading rate is determined
+_LOADING_PART = (0.08, 0.92)
+# cells of that interval, and cells in a window: fewer add noise
+_LOADING_CELLS, _SLOPE_CELLS = 48, 16
 
 
 class Events(NamedTuple):
-    """Whole cycles of a record: from a valley up to a peak (stick), down to the next (slip).
+    """Whole cycles of a record: rise from valley to peak (stick), fall to the next valley (slip).
 
     Parameters
     ----------
     start, peak, stop
         Times of valley, peak and next valley [s] (event).
     middle
-        Time at which half of the drop is complete [s] (event): the fall is steep there, so that
-        noise shifts it less than the peak.
+        Time at which half of the drop is complete [s] (event). The fall is steep there, so that
+        noise shifts this time less than that of the peak.
     rise, drop
         Heights of the rise and of the drop, in the signal's unit (event).
     """
@@ -57,7 +59,7 @@ def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
     spikes = 1 + np.flatnonzero(far[:-1] & far[1:])
     left, here, right = (values[spikes + step] for step in (-1, 0, 1))
     middle = np.clip(here, np.minimum(left, right), np.maximum(left, right))
-    # except for a spike the signal must be continuous: a drop is not a spike
+    # both neighbours must be at one level, else it is a drop and not a spike
     apart = np.abs(here - middle)
     single = (apart > least) & (apart > 2 * np.abs(right - left))
     if not single.any():

@@ -1,4 +1,4 @@
-"""Analysis of one record: oscillation, events and waveform at the scale of its period."""
+"""Analysis of the oscillation of one record: spectrum, stick-slip events, and waveform."""
 
 from __future__ import annotations
 
@@ -27,15 +27,16 @@ from tribolab.friction.oscillation.waveform import (
 
 # fewest samples per period in the search for events; records with more are averaged
 _SAMPLES_PER_PERIOD = 36
-_COARSE_SAMPLES_PER_PERIOD = 12  # the same, if noise splits drops
+_COARSE_SAMPLES_PER_PERIOD = 12  # the same, if noise splits drops into several
 _EVENT_SAMPLES = 1 << 17  # most samples searched for events: thousands of periods
-_DESPIKED_SAMPLES = 1 << 20  # longer records are not despiked: single samples hardly matter
+# spikes are not removed from longer records, as single samples hardly matter
+_DESPIKED_SAMPLES = 1 << 20
 _SIMULATED_CYCLES = 200  # simulated cycles that determine the bias due to noise
 _SIMULATION_ROUNDS = 2
 
 
 class Examined(NamedTuple):
-    """Results for a record; numbers have the signal's unit."""
+    """Results of the analysis of one record, in the signal's unit."""
 
     oscillation: Oscillation
     events: Events
@@ -62,7 +63,7 @@ class View(NamedTuple):
 
 
 def examine_record(time: np.ndarray, values: np.ndarray, *, force: bool = False) -> Examined | str:
-    """Analyse one record, or return the reason why it cannot be.
+    """Return the analysis of one record, or the reason why it cannot be analysed.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ def examine_record(time: np.ndarray, values: np.ndarray, *, force: bool = False)
     probability = class_probabilities(features(form, oscillation))
     if events.drop.size:
         excess = _excess(record, view, form, probability)
-        swing = np.ptp(record.values)  # extrapolated edges of a mean cycle may exceed it
+        swing = np.ptp(record.values)  # a drop extrapolated from the mean cycle may exceed it
         drop, rise = (np.minimum(x - excess, swing) for x in (events.drop, events.rise))
         events = events._replace(drop=drop, rise=rise)
     lines = components(surveyed)
@@ -121,7 +122,7 @@ def _best_view(record: EvenRecord, surveyed: Survey, noise: float) -> View:
         again = _view(record, oscillation(surveyed, near=own), noise)
         if not at_odds(again.oscillation, again.regularity):
             view = again
-    # slow drift minus its running mean also oscillates, with a period near the averaging time
+    # slow drift minus its running mean also oscillates, at a period near the averaging time
     sure = view.oscillation.false_alarm < limits.BAND_BY_CHANCE.value
     if sure and view.regularity.kind not in SLIP_KINDS[::2]:
         for part in (record, _without_wander(record, view.oscillation)):
@@ -174,7 +175,7 @@ def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
 
 
 def _without_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord | None:
-    """Remove the mean over one period; None if there is hardly any drift.
+    """Return a record minus its running mean over one period; None if there is hardly any drift.
 
     A wave's mean over its own period is constant, so that its cycles do not change. Half a period
     is lost at each end.
@@ -197,7 +198,7 @@ def _view(
 ) -> View:
     """Find the cycles of an oscillation at the scale of its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))
-    # average no more than the noise requires: means round off abrupt falls
+    # average only as much as the noise requires, because means round off abrupt falls
     wanted = min(limits.SWING_OVER_NOISE.value * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
     first = slice(_EVENT_SAMPLES * size)
@@ -210,7 +211,8 @@ def _view(
         limits.MIN_DROP_IN_STEPS.value * step,
     )
     events = find_events(part.time, part.values, hysteresis)
-    if events.drop.size:  # irregular cycles have a weak line: use the drops as the scale
+    # irregular cycles have a weak line: choose the hysteresis by the size of the drops
+    if events.drop.size:
         typical = limits.MIN_EVENT_OVER_SWING.value * float(np.mean(events.drop))
         if typical > hysteresis:
             hysteresis = typical
@@ -246,11 +248,11 @@ def _excess(
         drop = means(coarsened(part, finer), events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
-    # the power of a sine gives its size best: the power of the noise has been subtracted
+    # the power of a sine, minus that of the noise, gives its size best
     sine = float(np.clip((0.35 - oscillation.harmonic_content) / 0.2, 0.0, 1.0))
     if (
         view.regularity.kind == SLIP_KINDS[2]
-    ):  # the power includes the quiet time between the trains
+    ):  # the power also includes the quiet time between trains of oscillation
         sine = 0.0
     excess = 0.0
     if sine < 1:
@@ -277,7 +279,7 @@ def noise_excess(
     Returns
     -------
     float
-        In the signal's unit.
+        Bias in the signal's unit.
 
     Notes
     -----
@@ -317,7 +319,7 @@ def noise_excess(
 def _cycles(
     time: np.ndarray, values: np.ndarray, events: Events
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return the times within the events, straight lines between turning points, and residuals."""
+    """Return times within the events, values on lines between turning points, and residuals."""
     knots = np.append(np.stack([events.start, events.peak], axis=1).ravel(), events.stop[-1])
     first, last = np.searchsorted(time, knots[[0, -1]])
     time, values = time[first : last + 1], values[first : last + 1]

@@ -1,4 +1,4 @@
-"""Slow wave with too few periods to be distinguished from drift."""
+"""Slow waves with so few periods that they can hardly be distinguished from drift."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, block_means
 
-_GRID_POINTS = 192  # points that the record is averaged to
+_GRID_POINTS = 192  # number of block means to which the record is reduced
 _TRIED_CYCLES = np.arange(2.0, 5.21, 0.1)  # trial numbers of waves in the record
 _WAVE_HARMONICS = 2
-_DRIFT_DEGREE = 4  # of the polynomial that must explain less: drifts of any kind
+_DRIFT_DEGREE = 4  # degree of the polynomial, for drifts of any kind, that must fit worse
 _MIN_SAMPLES = 32
 _SINE_COLUMNS = 4  # first columns of a wave's basis: straight line, cosine, sine
 
 
 class SlowWave(NamedTuple):
-    """Number of periods in the record, explained share of the variance about a line, and swing."""
+    """A slow wave: periods in the record, share of the variance about a line, and swing."""
 
     periods: float
     explained: float
@@ -28,7 +28,7 @@ class SlowWave(NamedTuple):
 
 @cache
 def _bases() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return orthonormal bases: line and polynomial (point, term), waves (cycles, point, term)."""
+    """Return orthonormal bases of polynomials (point, term) and of waves (cycles, point, term)."""
     x = (np.arange(_GRID_POINTS) + 0.5) / _GRID_POINTS
     powers = np.polynomial.legendre.legvander(2 * x - 1, _DRIFT_DEGREE)
     turn = 2 * np.pi * _TRIED_CYCLES[:, None] * x
@@ -48,8 +48,8 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
 
     Notes
     -----
-    Means over blocks are fitted with a straight line plus a sine and its second harmonic, two to
-    five periods in the record. Red noise drifts at all scales: a single wave explains three
+    A straight line plus a sine and its second harmonic, with two to five periods in the record, is
+    fitted to means over blocks. Red noise drifts at all scales: a single wave explains three
     quarters of it in fewer than 1 % of records. A wave is not reported if a polynomial of fourth
     degree, such as a drift, fits as well.
 
@@ -87,7 +87,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
 
 
 def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
-    """Remove the dominant slow sine; return also its peak-to-peak amplitude. None if small.
+    """Return a record without its dominant slow sine, and the sine's swing; None if it is small.
 
     Next to a slow oscillation the spectrum cannot distinguish a faster one from slow drift.
 

@@ -8,11 +8,11 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.events import Events, find_events
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
-_WINDOW_OF_FALL = 0.38  # of a period on each side of the fall
-_GAP_TO_FALL = 0.005  # of a period between the fall and the intervals next to it ...
-_AVERAGED_PART = 0.06  # ... whose means are compared: slow noise is alike in both
+_WINDOW_OF_FALL = 0.38  # periods averaged on each side of the fall
+_GAP_TO_FALL = 0.005  # periods between the fall and the intervals before and after it ...
+_AVERAGED_PART = 0.06  # ... and their length in periods; slow noise is alike in both
 _FALL_ROUNDS = 3
-_CYCLE_PHASES = 256  # at which the extremes of a smooth cycle are evaluated
+_CYCLE_PHASES = 256  # phases among which the extremes of a smooth cycle are sought
 
 
 def abrupt_drop(record: EvenRecord, events: Events) -> float:
@@ -28,7 +28,7 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
     Returns
     -------
     float
-        In the signal's unit; NaN for too few samples or events.
+        The size in the signal's unit; NaN for too few samples or events.
 
     Notes
     -----
@@ -77,7 +77,7 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
 
 
 def abrupt_rise(record: EvenRecord, events: Events) -> float:
-    """Return the mean height of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
+    """Return the mean rise of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def abrupt_rise(record: EvenRecord, events: Events) -> float:
     Returns
     -------
     float
-        In the signal's unit; NaN for too few samples or events.
+        The size in the signal's unit; NaN for too few samples or events.
     """
     turned = record._replace(values=-record.values)
     swing = float(np.min(events.drop)) if events.drop.size else 0.0
@@ -109,7 +109,7 @@ def smooth_drop(record: EvenRecord, events: Events) -> float:
     Returns
     -------
     float
-        In the signal's unit; NaN for too few samples or events.
+        The size in the signal's unit; NaN for too few samples or events.
 
     Notes
     -----

@@ -14,12 +14,12 @@ from tribolab.friction.oscillation.spectrum.spectra import Spectrum
 from tribolab.friction.oscillation.spectrum.survey import Survey
 
 _SUMMED_HARMONICS = 6
-_BANDS_OF_HUMP = 7  # bands that a hump in the spectrum covers
+_BANDS_OF_HUMP = 7  # width of a broad hump in the spectrum, in bands
 _MEAN_FREQUENCY_ROUNDS = 15  # iterations in which the mean frequency converges
 
 
 class Oscillation(NamedTuple):
-    """Result of the spectrum of one record.
+    """Strongest oscillation in the spectrum of one record.
 
     Parameters
     ----------
@@ -30,9 +30,9 @@ class Oscillation(NamedTuple):
     mean_frequency, mean_frequency_error
         For a wave without a sharp line, the mean over its spectrum [Hz], see `mean_frequency`.
     false_alarm
-        Probability that noise shows such a peak anywhere in the spectrum.
+        Probability that noise causes such a peak anywhere in the spectrum.
     prominence
-        Power of the peak over its background.
+        Ratio of the power of the peak to its background.
     swing
         Peak-to-valley size of the oscillation, from its power (with harmonics).
     noise
@@ -42,7 +42,7 @@ class Oscillation(NamedTuple):
     harmonic_content
         Amplitude of the harmonics 2 to 6 relative to the first.
     bands, power, background, level
-        Spectrum in bands [Hz] and its background; level that noise exceeds with 1 in 1000.
+        Spectrum in bands [Hz], its background, and the level that noise exceeds once in 1000.
     mains
         Lines of the mains; they are removed first.
     method
@@ -125,7 +125,7 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
 
 
 def _nearest_summit(fine: Spectrum, near: float) -> int:
-    """Return the strongest bin near a frequency, never bin 0; the nearest one if none is near."""
+    """Return the strongest bin near a frequency, except bin 0; if none is near, the nearest bin."""
     part = np.abs(fine.frequency - near) <= max(
         limits.MAX_DISTANCE_FROM_DROPS.value * near, 1.01 * fine.width[0]
     )
@@ -142,7 +142,7 @@ def _summit(fine: Spectrum, starts: np.ndarray, top: int) -> int:
 
 
 def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np.ndarray]:
-    """Return a line's frequency (centre of its power), its error, and its harmonics' variances."""
+    """Return a line's frequency (centre of its power) with error, and variances of harmonics."""
     f0, error = float(fine.frequency[at]), 0.0
     excess = np.maximum(fine.power - level, 0) * fine.width
     excess[fine.frequency <= 0] = 0.0  # the remainder of the mean is not part of a line
@@ -155,7 +155,7 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
             break
         f0 = float(fine.frequency[near] @ weight / weight.sum())
         spread = float(np.sqrt((fine.frequency[near] - f0) ** 2 @ weight / weight.sum()))
-        # the centre of a jittering line of width s over a record scatters by s / sqrt(bins it
+        # the centre of a line of width s, broadened by jitter, scatters by s / sqrt(bins it
         # covers)
         error = spread / np.sqrt(max(spread / fine.width[at], 1.0))
     powers = np.zeros(_SUMMED_HARMONICS)
@@ -184,12 +184,12 @@ def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, f
     Returns
     -------
     tuple
-        Both [Hz].
+        Mean frequency and its standard error [Hz].
 
     Notes
     -----
-    m1/m0, the mean frequency of irregular sea waves [1]_, with the moments of the spectrum under a
-    lognormal window around the mean itself, so that neither slow drift nor noise counts. Unlike the
+    It is m1/m0, as for irregular sea waves [1]_, with the moments of the spectrum in a lognormal
+    window around the mean itself, which excludes slow drift and noise. Unlike the
     count of drops it needs no threshold, and noise shifts it half as much.
 
     References
@@ -213,7 +213,7 @@ def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, f
 
 
 def _swing(powers: np.ndarray) -> float:
-    """Return the peak-to-valley swing, between sine and sawtooth by the share of harmonics."""
+    """Return the peak-to-valley swing: between that of sine and sawtooth, by share of harmonics."""
     variance = powers.sum()
     share = min(powers[1:].sum() / max(variance, 1e-300) / 0.39, 1.0)  # 0.39: an ideal sawtooth
     factor = np.sqrt(8.0) * (1 - share) + np.sqrt(12.0) * share

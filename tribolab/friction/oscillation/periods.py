@@ -18,7 +18,8 @@ from tribolab.friction.oscillation.waveform import (
     most_probable,
 )
 
-AT_ODDS = "the spectrum tells a period"  # begins the remark that drops give another period
+# start of the remark on a spectrum and drops that differ in period
+AT_ODDS = "the spectrum tells a period"
 
 
 class PeriodVerdict(NamedTuple):
@@ -33,7 +34,7 @@ class PeriodVerdict(NamedTuple):
     periods
         Number of periods in the record.
     doubt
-        Why no class is assigned; else empty.
+        Reason why no class is assigned; else empty.
     """
 
     kind: str
@@ -44,7 +45,7 @@ class PeriodVerdict(NamedTuple):
 
 
 def at_odds(oscillation: Oscillation, seen: Regularity) -> bool:
-    """Return whether spectrum and drops give different periods, beyond their errors."""
+    """Return whether the periods from spectrum and drops differ by more than their errors."""
     periods = seen.periods
     if not periods.size:
         return False
@@ -119,7 +120,7 @@ def period_verdict(
     own = 1 / float(periods.mean()) if irregular else frequency
     count = own * duration
     unclaimed = kind in (CLASSES[0], NOT_CLEAR)
-    # a slow wave under many periods of another one is drift
+    # if a faster wave has many periods, a slow one below it is drift
     few = slow is not None and count < limits.MIN_CYCLES_PER_SLOW_WAVE.value * slow.periods
     if slow is not None and (
         unclaimed
@@ -167,10 +168,12 @@ def period_verdict(
         and count >= 2 * limits.MIN_CYCLES_IN_RECORD.value
         and not periods.size
     ):
-        return PeriodVerdict(kind, frequency, error, count)  # noise hides the drops of a line
+        # the line is significant, but noise hides the drops
+        return PeriodVerdict(kind, frequency, error, count)
     if not seen.kind or (irregular and periods.size < limits.MIN_PERIODS_FOR_SCATTER.value):
         return _undecided("too few drops repeat to tell the period")
-    trains = seen.kind == SLIP_KINDS[2]  # intermittent trains have lines of their own
+    # the start and stop of trains of oscillation make lines, too
+    trains = seen.kind == SLIP_KINDS[2]
     strongest = lines[0].frequency if several and not trains else frequency
     if abs(np.log(frequency / strongest)) > limits.MAX_DIFFERENCE_OF_PERIODS.value:
         return _undecided(

@@ -27,16 +27,16 @@ from tribolab.friction.run_out import turned
 _TURNS_PER_FIT = 8.0  # turns that one fit covers
 _MAX_ORDER = 8
 _BLOCKS_PER_TURN = 32  # blocks per turn to which waves are fitted
-# spectral widths from a line that define its surroundings
+# distances from a line, in spectral widths, between which its surroundings lie
 _WIDTHS_TO_SURROUNDINGS = (1.0, 1.5, 2.0)
 _FAST_PIECE_SAMPLES = 64  # samples in a piece for aliased waves
 _MAX_FAST_ORDER = 2
-REPEATS = "repeats"  # marks repeating waves in the text of ``instrument``
+REPEATS = "repeats"  # word for such waves in the text of ``instrument``
 _TIMES = {1: "once", 2: "twice"}
 
 
 class RigWave(NamedTuple):
-    """Wave that repeats with a rig: its values (time), its swing, and its order.
+    """Wave that repeats with each turn of a rig: values (time), swing, and periods per turn.
 
     `undersampled` waves are faster than half the rate of the record.
     """
@@ -47,7 +47,7 @@ class RigWave(NamedTuple):
     undersampled: bool = False
 
     def words(self, what: str) -> str:
-        """Return a text with the repetitions per period `what`, e.g. "turn".
+        """Return how often a wave repeats per period of the rig as text; `what` is, e.g., "turn".
 
         Examples
         --------
@@ -96,7 +96,7 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
     Parameters
     ----------
     values, angle
-        Any unit, and [rad] (time).
+        The signal in any unit, and the angle of the rig [rad] (time).
 
     Examples
     --------
@@ -146,7 +146,7 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
 def _find_repeated(
     values: np.ndarray, angle: np.ndarray, orders: np.ndarray, count: int, size: int, late: float
 ) -> RigWave | None:
-    """Look for waves of some orders in `count` pieces, in blocks of `size` samples."""
+    """Return the waves of given orders, fitted to `count` pieces in blocks of `size` samples."""
     n, turns = values.size, abs(float(angle[-1] - angle[0])) / (2 * np.pi)
     turn = np.linspace(angle[0], angle[-1], count + 1)
     edges = np.searchsorted(np.sign(turn[-1] - turn[0]) * angle, np.sign(turn[-1] - turn[0]) * turn)
@@ -167,7 +167,7 @@ def _find_repeated(
 
 
 class _Fit(NamedTuple):
-    """Complex amplitude of each order, and mean power of its surroundings, in a piece (order)."""
+    """Complex amplitude of each order in a piece, and mean power around it (order)."""
 
     size: np.ndarray
     around: np.ndarray
@@ -181,7 +181,7 @@ def _ranges(edges: np.ndarray) -> list[tuple[int, int]]:
 def _fit(
     values: np.ndarray, angle: np.ndarray, size: int, orders: np.ndarray, turns: float
 ) -> _Fit:
-    """Fit a straight line and the waves to a piece, and the residual power around the waves."""
+    """Fit a line and waves to a piece; return their amplitudes, and the power around them."""
     count = values.size // size
     y = values[: count * size].reshape(count, size).mean(axis=1)
     at = angle[: count * size].reshape(count, size).mean(axis=1)
@@ -204,7 +204,7 @@ def _fit(
 def _significant_orders(
     orders: np.ndarray, fits: list[_Fit], turns: float, off: float
 ) -> tuple[np.ndarray, float]:
-    """Return the significant orders with a stable phase, and their share without noise."""
+    """Return orders that are significant and stable in phase, and the share of each above noise."""
     size = np.array([fit.size for fit in fits])
     power, around = (abs(size) ** 2).mean(axis=0), np.mean([fit.around for fit in fits], axis=0)
     ratio = power / np.maximum(around, 1e-300)

@@ -37,7 +37,7 @@ def signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
     signal = friction_signal(run)
     if signal == "friction_force":
         force = run["friction_force"].values
-        # a sensor of reversed sign would exchange sticks and slips
+        # with a reversed sign, sticks and slips would be exchanged
         means = [
             d * np.nanmean(force[s][:_SIGN_SAMPLES])
             for s, d in zip(parts, direction, strict=True)
@@ -92,7 +92,7 @@ def _signed(values: np.ndarray, sign: float) -> np.ndarray:
 
 
 def is_clipped(values: np.ndarray) -> bool:
-    """Return whether the signal repeatedly stays at its largest or smallest value (clipping)."""
+    """Return whether a signal is clipped: it often stays at its largest or smallest value."""
     if values.size < 32 or values.size > 1 << 21:
         return False
     for end in (np.nanmax(values), np.nanmin(values)) if np.isfinite(values).any() else ():

@@ -33,7 +33,7 @@ _MEANS = (
     "oscillating_time_share",
 )
 _NUMBERS = (*_MEANS, "oscillation_swing", "rig_swing")
-# variables of a `stick_slip` result that a curve needs: only these have to be read
+# variables of a `stick_slip` result that a curve needs; others are not read
 NEEDED = frozenset(
     {"sliding_speed", "waveform", "instrument", "regularity", REJECTED, *_NUMBERS}
     | {f"force_{name}" for name in _NUMBERS}
@@ -149,7 +149,7 @@ _SCALING = {
     "scaling_error": "scaling_error",
     "scaling": "scaling",
     "resonance_frequency_Hz": "resonance_frequency",
-}  # attribute of one curve: variable of several curves
+}  # what is an attribute of one curve is a variable of several
 
 
 def _join_curves(
@@ -177,7 +177,7 @@ def one_curve(curve: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     curve
-        Selected from the curves of several systems, only over ``sliding_speed``.
+        One of the curves of several systems, with dim ``sliding_speed`` only.
     """
     if "scaling" not in curve:
         return curve
@@ -209,7 +209,7 @@ def _regularity(slip: xr.Dataset) -> np.ndarray:
 
 
 def _repeats(instrument: str) -> str:
-    """Return the part of the ``instrument`` text on waves that repeat with each turn of the rig."""
+    """Return what the ``instrument`` text says on waves that repeat with each turn of the rig."""
     return next((part for part in instrument.split("; ") if REPEATS in part), "")
 
 
@@ -262,7 +262,7 @@ def frequency_scaling(curve: xr.Dataset) -> Scaling:
 
     Notes
     -----
-    Least squares of ln f over ln v, each speed weighted by its number of segments. The error is
+    Least squares of ln f against ln v, each speed weighted by its number of segments. The error is
     from the scatter about the line, scaled by Student's t to one standard deviation. The wavelength
     is fixed if 1 is within two errors of n and 0 is not; the frequency is fixed in the opposite
     case; neither is fixed if neither is within two errors.

@@ -29,7 +29,7 @@ from tribolab.friction.oscillation.slip_table import (
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 from tribolab.units.stamping import stamp
 
-# for a run with forces only, these are in N and prefixed with "force_"
+# variables that are in N and named "force_..." if a run has forces only
 _IN_SIGNAL_UNIT = (
     "drop",
     "drop_std",
@@ -202,7 +202,7 @@ def _remark(seen: Examined | str, cut: bool, speed: float) -> str:
 
 
 def _form_words(examined: Examined, speed: float) -> list[str]:
-    """Return remarks on special features of a claimed oscillation."""
+    """Return remarks on special features of an oscillation that is reported."""
     if not oscillates(examined):
         return []
     words, seen = [], examined.regularity
@@ -228,7 +228,7 @@ def _form_words(examined: Examined, speed: float) -> list[str]:
 def _without_rig_wave(
     signal: SegmentSignal, motion: RigMotion | None
 ) -> tuple[np.ndarray, RigWave | None]:
-    """Return a segment without waves that repeat with each turn or stroke of the rig, and these."""
+    """Return a segment minus waves that repeat with each turn or stroke of the rig, and these."""
     if motion is None:
         return signal.values, None
     good = np.isfinite(signal.values)

@@ -12,7 +12,7 @@ from tribolab.friction.oscillation.examine import Examined
 from tribolab.friction.oscillation.regularity import scatter
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT
 
-# columns that remain for a segment without oscillation
+# columns that are numbers even for a segment without oscillation
 _NOISE_COLUMNS = (
     "false_alarm_probability",
     "peak_prominence",
@@ -29,14 +29,14 @@ _NOISE_COLUMNS = (
 
 
 def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    """Find the segments whose oscillation keeps its frequency at all speeds.
+    """Return a mask of segments whose oscillation has the same frequency at all speeds.
 
     Parameters
     ----------
     kind
         Class of waveform; only a sinus-like oscillation is a resonance (segment).
     frequency, speed
-        [Hz], [m/s] (segment).
+        Frequency [Hz] and sliding speed [m/s] (segment).
 
     Returns
     -------
@@ -63,7 +63,7 @@ def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.nd
 
 
 class SlipRow(NamedTuple):
-    """Results of one segment; see `tribolab.friction.oscillation.slip_segments` for each."""
+    """Results of one segment; `tribolab.friction.oscillation.slip_segments` explains each."""
 
     dominant_frequency: float
     dominant_frequency_sem: float
@@ -258,7 +258,7 @@ def _grid(axes: list[np.ndarray]) -> np.ndarray:
 
 
 def _interpolated(grid: np.ndarray, axis: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """Interpolate a spectrum to the grid in logarithms; NaN beyond its ends."""
+    """Return a spectrum interpolated to a grid, log against log; NaN beyond its ends."""
     log = np.log(np.maximum(power, 1e-300))
     return np.exp(np.interp(np.log(grid), np.log(axis), log, left=np.nan, right=np.nan))
 

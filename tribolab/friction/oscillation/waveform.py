@@ -25,10 +25,10 @@ class WaveformFeatures(NamedTuple):
     Parameters
     ----------
     fall_share
-        Median part of a cycle in which friction falls: 0.5 for a sine, near 0 for a sawtooth.
+        Median share of a cycle in which friction falls: 0.5 for a sine, near 0 for a sawtooth.
     asymmetry_p_value
-        p value of the sign test over cycles that rises and falls last equally long, as in noise,
-        which is symmetric in time.
+        p value of the hypothesis that rises and falls last equally long, as in noise; from the sign
+        test over cycles.
     derivative_skewness
         Skewness of the derivative: 0 for a sine, strongly negative for a sawtooth.
     period_scatter, drop_scatter
@@ -89,11 +89,11 @@ CLASSES = ("smooth sliding", "sawtooth stick-slip", "sinus-like oscillation", "r
 NOT_LOOKED_AT = "not evaluated"
 NOT_CLEAR = "not decided"
 
-# feature: (value if unknown, lowest, highest); values beyond are clipped
+# for each feature: value if unknown, lowest and highest; values beyond are clipped
 WAVEFORM_LIMITS = {
-    "prominence": (0.0, -0.5, 4.0),  # log10 of the peak's power over the background
+    "prominence": (0.0, -0.5, 4.0),  # log10(power of the peak / background)
     "significance": (0.0, 0.0, 8.0),  # -log10 of the false-alarm probability
-    "strength": (-0.3, -0.5, 1.5),  # log10 of the swing over the noise
+    "strength": (-0.3, -0.5, 1.5),  # log10(swing / noise)
     "share": (0.0, 0.0, 1.0),
     "harmonics": (0.5, 0.0, 1.2),
     "asymmetry": (0.0, -0.5, 0.5),  # 0.5 minus the share of the falling part
@@ -101,7 +101,7 @@ WAVEFORM_LIMITS = {
     "reversal": (0.0, 0.0, 6.0),  # -log10 of the p value that rises and falls last equally long
     "skewness": (0.0, -4.0, 4.0),
     "sharpness": (0.0, 0.0, 4.0),  # absolute value of the skewness
-    "scatter": (0.5, 0.0, 0.8),  # of the periods
+    "scatter": (0.5, 0.0, 0.8),  # standard deviation over mean of the periods
 }
 
 # one number for each class, in the order of CLASSES
@@ -122,7 +122,7 @@ _COEFFICIENTS = {
 
 
 def features(form: WaveformFeatures, oscillation: Oscillation) -> dict[str, float]:
-    """Return the features of the class, each clipped to its `WAVEFORM_LIMITS`."""
+    """Return the features from which the class is predicted, each within its `WAVEFORM_LIMITS`."""
     raw = {
         "prominence": np.log10(max(oscillation.prominence, 1e-9)),
         "significance": -np.log10(max(oscillation.false_alarm, 1e-99)),
@@ -156,7 +156,7 @@ def class_probabilities(values: dict[str, float]) -> np.ndarray:
 
 
 def oscillating(kind: np.ndarray) -> np.ndarray:
-    """Return a mask of the classes of waveform that are an oscillation.
+    """Return which classes of waveform are oscillations, as a mask.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def oscillating(kind: np.ndarray) -> np.ndarray:
 
 
 def most_probable(probability: np.ndarray) -> str:
-    """Return the most probable class, or "not decided" if smooth sliding is possible but unlikely.
+    """Return the most probable class; "not decided" if smooth sliding is unlikely but possible.
 
     Examples
     --------

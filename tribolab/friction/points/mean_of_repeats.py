@@ -38,7 +38,7 @@ class Mean(NamedTuple):
 
 
 class Pooled(NamedTuple):
-    """Scatter of repeats under other conditions, relative to their mean, and degrees of freedom."""
+    """Relative scatter of repeats under other conditions, and its degrees of freedom."""
 
     scatter: float
     dof: float
@@ -89,7 +89,7 @@ def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | Non
 
 
 def _integrated(y: np.ndarray, s: np.ndarray, scale: float | None) -> Mean:
-    """Return the mean with the scatter between repeats integrated out; `scale` is of its prior."""
+    """Return the mean, integrated over the unknown scatter between repeats and its prior."""
     size = float(np.sqrt(np.median(s**2) + y.var()))
     tau = _SCATTER_GRID * size
     w = 1 / (s**2 + tau[:, None] ** 2)
@@ -117,7 +117,7 @@ _ONE_SIGMA = float(2 * special.ndtr(-1.0))
 
 
 def _half_width(weight: np.ndarray, off: np.ndarray, width: np.ndarray, out: float) -> float:
-    """Return the half interval about zero outside of which a mixture of normals has `out`."""
+    """Return x such that a mixture of normal distributions exceeds ±x with probability `out`."""
     low, high = 0.0, float(np.abs(off).max() + 12 * width.max())
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
@@ -180,7 +180,7 @@ def pooled_between_runs(table: np.ndarray) -> Pooled:
     if runs < 2 or not speeds:
         return Pooled(0.0, 0.0)
     rows, columns = common.mean(axis=1), common.mean(axis=0)
-    of_runs = float(rows.var(ddof=1))  # offset, and a share 1/n of the scatter from speed to speed
+    of_runs = float(rows.var(ddof=1))  # offset, and 1/n of the variance from speed to speed
     if speeds == 1:
         return Pooled(float(np.sqrt(of_runs)), runs - 1.0)
     rest = common - rows[:, None] - columns + common.mean()

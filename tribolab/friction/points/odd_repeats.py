@@ -28,11 +28,11 @@ _SEED = 7
 
 
 class OddRepeat(NamedTuple):
-    """Outlying repeats of one condition.
+    """An outlying repeat of one condition.
 
-    `repeat` is the number of the outlier, -1 for two repeats; `deviation` is relative to the
-    others' mean, for two repeats their difference; `repeatability` is the relative standard
-    deviation elsewhere; `odd` is False if it is merely suspect.
+    `repeat` is the index of the outlier, -1 if only two repeats differ. `deviation` is relative to
+    the mean of the others, or the relative difference of the two. `repeatability` is the relative
+    standard deviation under other conditions. `odd` is False if the repeat is merely suspect.
     """
 
     condition: int
@@ -43,7 +43,7 @@ class OddRepeat(NamedTuple):
 
 
 def _contrasts(k: int) -> np.ndarray:
-    """Return the Helmert contrasts of k repeats: independent, of variance 1 each."""
+    """Return the k - 1 Helmert contrasts of k repeats, which are independent and of variance 1."""
     rows = np.zeros((k - 1, k))
     for i in range(1, k):
         rows[i - 1, :i], rows[i - 1, i] = 1.0, -float(i)
@@ -52,7 +52,7 @@ def _contrasts(k: int) -> np.ndarray:
 
 
 def _scores(groups: Sequence[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return z of each repeat (sample, repeat), one for two repeats, and the scatter elsewhere."""
+    """Return deviation over scatter of each repeat (sample, repeat), and the scatter elsewhere."""
     squares = [(values @ _contrasts(values.shape[1]).T) ** 2 for values in groups]
     scores, scatters = [], []
     for own, values in enumerate(groups):

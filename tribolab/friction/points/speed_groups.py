@@ -1,4 +1,4 @@
-"""Grouping of speeds within a tolerance, without chains of neighbours."""
+"""Grouping of measured speeds that had the same set-point."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def speed_groups(
     Parameters
     ----------
     speed
-        Above zero [m/s] (observation), in any order.
+        Positive speeds [m/s] in any order (observation).
     tolerance
         Largest relative difference within a group [1].
     apart
@@ -41,11 +41,11 @@ def speed_groups(
 
     Notes
     -----
-    The sorted gaps between neighbouring logarithms of speed fall into those within groups and those
-    between them. The threshold is put at the widest relative jump between two sorted gaps, unless a
-    group would be wider than the tolerance, or most gaps between groups narrower than half a group.
-    If no jump is wide enough, groups are formed by complete linkage up to the tolerance, and the
-    verdict is "unclear".
+    Gaps between neighbouring logarithms of speed are small within groups and large between them.
+    The gaps are sorted, and the threshold is put at the widest relative jump between two of them,
+    unless a group would be wider than the tolerance, or gaps between groups narrower than half a
+    group. If no jump is wide enough, groups are formed by complete linkage up to the tolerance, and
+    the verdict is "unclear".
 
     Examples
     --------
@@ -68,7 +68,7 @@ def speed_groups(
 
 
 def _group_by_jump(x: np.ndarray, most: float) -> tuple[np.ndarray, Verdict]:
-    """Return the groups of sorted logarithms, and how clearly they differ."""
+    """Return the group number of each sorted ln(speed), and how clearly the groups differ."""
     n, floor = x.size, limits.SPEED_FLOOR.value
     if n == 1:
         return np.zeros(1, int), "clear"
@@ -107,7 +107,7 @@ def _is_sound(x: np.ndarray, labels: np.ndarray, most: float) -> bool:
 
 
 def _link_speeds(x: np.ndarray, most: float) -> np.ndarray:
-    """Return groups by complete linkage; speeds closer than the floor are combined first."""
+    """Return group numbers by complete linkage, after speeds closer than the floor are combined."""
     cells, which = np.unique(np.floor(x / limits.SPEED_FLOOR.value), return_inverse=True)
     middle = np.bincount(which, x) / np.bincount(which)
     if cells.size < 2:
@@ -141,7 +141,7 @@ def sweeps_of(run: np.ndarray, order: np.ndarray, speed: np.ndarray) -> np.ndarr
     run, order
         Number of the run, and position in it (observation).
     speed
-        [m/s] (observation).
+        Speeds [m/s] (observation).
 
     Returns
     -------

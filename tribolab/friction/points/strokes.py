@@ -43,7 +43,7 @@ class Observations(NamedTuple):
 
 
 def observations_of(frictions: Sequence[xr.Dataset]) -> Observations:
-    """Return the observations of runs.
+    """Return the independent observations of runs: pairs of strokes, and single strokes.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def pairs_of(friction: xr.Dataset) -> np.ndarray:
 
 
 def wider_error(column: Callable[[str], np.ndarray], name: str, ending: str) -> np.ndarray:
-    """Return the larger error of each segment: over its path, or beyond it, as a trend may go on.
+    """Return the larger error of each segment: over its path, or beyond it.
 
     Parameters
     ----------
@@ -109,15 +109,15 @@ def grouped_strokes(
     pairs: np.ndarray,
     known: np.ndarray,
 ) -> Observations:
-    """Return observations with the two strokes of a pair, which share one error, combined (stroke).
+    """Return observations from strokes (stroke): the two strokes of a pair make one observation.
 
     Parameters
     ----------
     run
         Number of the run.
     speed, set_speed, value, sem, u95, shared, variance
-        Columns of the strokes; in the unit of the value, speeds in m/s. An unknown `u95` is that
-        of a normal distribution.
+        Columns of the strokes, speeds in m/s. An unknown `u95` is computed from `sem` for a normal
+        distribution.
     pairs
         The same number for the strokes of a pair, below 0 for a stroke without a partner.
     known
@@ -149,7 +149,7 @@ def grouped_strokes(
 
 
 class Grouping(NamedTuple):
-    """Observations of each point, from the lowest speed on, and the separation of points."""
+    """Observations of each point, from the lowest speed on, and how clearly points differ."""
 
     members: list[np.ndarray]
     verdict: str
@@ -221,7 +221,7 @@ def _series_mean(values: np.ndarray, errors: np.ndarray) -> Mean:
     wide = sem * coverage_of(dof)
     known = errors[np.isfinite(errors)]
     own = float(np.sqrt((known**2).sum()) / max(known.size, 1))
-    if NORMAL * own > wide:  # strokes that agree better than their own errors
+    if NORMAL * own > wide:  # strokes that agree better than their own errors do so by chance
         return Mean(float(values.mean()), own, NORMAL * own)
     return Mean(float(values.mean()), sem, wide)
 

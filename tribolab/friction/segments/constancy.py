@@ -24,8 +24,8 @@ from tribolab.friction.segments.noise import running_median
 from tribolab.friction.segments.proof import Readings, changes_significantly
 
 _BINS_OF_PIECE = 16  # bins within a piece
-_NEIGHBOURHOOD = 1.5  # of its length are examined on each side
-# readings of a piece whose bins contain too few to estimate their noise
+_NEIGHBOURHOOD = 1.5  # lengths of a piece that are examined on each side of it
+# up to this many readings in a piece, a bin has too few to estimate their noise
 _FEW_READINGS = 16 * _BINS_OF_PIECE
 
 
@@ -37,7 +37,7 @@ class MeanVelocities:
     time
         Finite samples [s].
     velocity, position
-        One of them [m/s], [m].
+        Either of them, [m/s] or [m].
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class MeanVelocities:
     ) -> None:
         self.time = time
         self._from_position = position is not None
-        # noise of a bin of twice the width, relative
+        # factor by which noise decreases in a bin of twice the width
         self.averaging = 2**-1.5 if self._from_position else 2**-0.5
         own = position if position is not None else velocity
         if own is None:
@@ -63,8 +63,9 @@ class MeanVelocities:
     def means(self, edges: np.ndarray) -> np.ndarray:
         """Return the mean velocity between successive times; NaN without samples.
 
-        From the velocity, with enough samples: mean of the middle half of eight sorted parts,
-        robust to spikes. From the position: slope between its means around the two times.
+        Each is the mean of the middle half of eight sorted part means, which spikes do not affect,
+        if there are enough samples. From positions, it is the slope between their means around the
+        two times.
         """
         return self._slopes(edges) if self._from_position else self._levels(edges)
 
@@ -92,7 +93,7 @@ class MeanVelocities:
 
 
 def _fit(place: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
-    """Return the least-squares polynomial at the places it was fitted to."""
+    """Fit a polynomial by least squares and return its values at the fitted points."""
     basis = np.polynomial.legendre.legvander(place, degree)
     return basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
 
@@ -113,7 +114,7 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
 
 
 def constant_part(data: MeanVelocities, first: int, last: int, drift: float) -> tuple[int, int]:
-    """Return the samples [first, last) of a piece without ends that deviate from its level.
+    """Return the samples [first, last) of a piece without those ends that deviate from its level.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ def find_segments(
         recorded velocity, the position is used.
     trim
         Share of each segment's duration that is omitted at each end, 0 <= trim < 0.5; ``"10 %"`` is
-        0.1. The dim of an array of several shares becomes a dim of the result.
+        0.1. An array of several shares adds its dim to the result.
     resolution
         Relative difference of speed that separates two neighbouring plateaus.
     drift
@@ -194,12 +194,12 @@ def _plateau_share(run: xr.Dataset, plateaus: xr.Dataset) -> float:
 
 
 def _use_points(run: xr.Dataset, source: str) -> xr.Dataset:
-    """Return each row as a segment: a result at one speed, of unknown duration."""
+    """Return one segment for each row of a file whose rows are results at one speed."""
     return measured(run, of_points(run), source, 0.0, None).assign_attrs(rows_are="points")
 
 
 def _mark_ramp(run: xr.Dataset, stretch: Stretch) -> Stretch:
-    """Return a rest as a ramp if a crank's stroke within it has a velocity."""
+    """Return a rest reclassified as a ramp if the velocity, computed for a crank, is not zero."""
     first, last = np.searchsorted(run["time"].values, (stretch.start, stretch.stop))
     if stretch.kind != "at rest" or not run["sliding_velocity"].values[first : last + 1].any():
         return stretch

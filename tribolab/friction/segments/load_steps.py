@@ -8,7 +8,7 @@ from tribolab.arrays.medians import median
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.stretches import Stretch
 
-_LOAD_BINS = 600  # in an interval
+_LOAD_BINS = 600  # most bins of an interval whose load is compared
 _SAMPLES_PER_BIN = 10  # fewest samples in a bin
 _CHANGES = "load changes"
 
@@ -30,7 +30,7 @@ def at_levels(
     Returns
     -------
     list of Stretch
-        Only the unchanged interval if the load has no levels, but drifts or rises throughout.
+        The unchanged interval alone if the load drifts or rises throughout, without levels.
     """
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
     bins = min(_LOAD_BINS, (last - first) // _SAMPLES_PER_BIN)
@@ -68,7 +68,7 @@ def at_levels(
 
 
 def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
-    """Return the bins split to minimise the scatter, if both sides differ by a step."""
+    """Return ranges of bins at one load each: a range is split where the load steps most."""
     part = mean[first:last]
     if part.size < 2 * limits.MIN_BINS_OF_LEVEL.value:
         return [(first, last)]
@@ -88,7 +88,7 @@ def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
 
 
 def _trim_level(mean: np.ndarray, first: int, last: int) -> tuple[int, int]:
-    """Return the bins of a level without transitions at its ends."""
+    """Return the range of bins of a load level without the transitions at its ends."""
     level = float(median(mean[first:last]))
     near = np.flatnonzero(
         np.abs(mean[first:last] - level) <= limits.MAX_SCATTER_OF_LEVEL.value * abs(level)

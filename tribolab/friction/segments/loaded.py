@@ -1,4 +1,4 @@
-"""Loaded parts of the intervals of constant speed."""
+"""Parts of the intervals of constant speed in which the contact is loaded."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tribolab.friction.zero.limits import (
 )
 
 _NO_LOAD = "no load"
-_CONTACT_BINS = 200  # in an interval
+_CONTACT_BINS = 200  # bins of an interval whose load is compared
 
 
 def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits) -> list[Stretch]:
@@ -32,7 +32,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits
     stretches
         All intervals of the run in order.
     constancy
-        `min_samples` of a segment.
+        The `min_samples` of a segment is used.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits
     time, force = run["time"].values, np.asarray(run["normal_force"].values, float)
     middles = {k: _median(time, force, stretches, k) for k in ("constant", "at rest")}
     sliding = middles["constant"]
-    # median of the loads under contact: even if most strokes are unloaded
+    # only loads in contact count, as most strokes may be unloaded
     pressing = sliding[
         (sliding > 0) & (sliding > MAX_DRIFT_OF_LOAD_ZERO.value * sliding.max(initial=0.0))
     ]
@@ -75,7 +75,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits
 def _noise_at_rest(
     time: np.ndarray, force: np.ndarray, stretches: list[Stretch], zero: float, usual: float
 ) -> float:
-    """Return the scatter of the reading of the first unloaded rest [N]; 0 without one."""
+    """Return the scatter of the load readings in the first unloaded rest [N]; 0 without one."""
     for stretch in one_by_one(stretches):
         if stretch.kind == "at rest":
             part = force[slice(*np.searchsorted(time, [stretch.start, stretch.stop]))]
@@ -105,7 +105,7 @@ def _cut_at_contact(
     least: float,
     min_samples: int,
 ) -> list[Stretch]:
-    """Return an interval cut where its load begins or ends."""
+    """Return an interval cut where the load is applied or removed."""
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
     count = min(_CONTACT_BINS, last - first)
     if count < 1:

@@ -1,4 +1,4 @@
-"""Plateaus of a velocity record, by block averaging, classification and recursion."""
+"""Plateaus, ramps and rests of a velocity record, found in averaged blocks."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from tribolab.friction.segments.pieces import (
 )
 from tribolab.friction.segments.plateaus import find_breaks, straight_pieces
 
-_MAX_BLOCKS = 16384  # more blocks cost time without benefit: leftovers are searched again
-_LEFTOVER_BLOCKS = 512  # blocks in a second search
-# the value of a block is the median of the means of its parts, robust to spikes
+_MAX_BLOCKS = 16384  # most blocks of a first search; intervals without a plateau are searched again
+_LEFTOVER_BLOCKS = 512  # most blocks of such a second search
+# a block is averaged over the middle half of its sorted part means, which spikes do not affect
 _PARTS_OF_BLOCK = 8
 
 
 def locate(
     time: np.ndarray, velocity: np.ndarray, constancy: ConstancyLimits, floor: float = 0.0
 ) -> list[VelocityPiece]:
-    """Return the contiguous pieces of a record without gaps.
+    """Return the plateaus, ramps and rests that make up a velocity record.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def locate(
     constancy
         Limits of constant speed.
     floor
-        Least noise of a sample [m/s], if known.
+        Smallest possible noise of a sample [m/s], if known.
     """
     pieces = _locate(time, velocity, constancy, None, None, floor)
     pieces = drop_transient(bridge_bumps(join_equal(pieces, constancy), constancy), constancy)
@@ -49,7 +49,7 @@ def locate(
 
 
 def block_size(samples: int, most: int = _MAX_BLOCKS) -> int:
-    """Return the samples per block: 1 for small records, else 8, 16, 32, ..."""
+    """Return the number of samples per block: 1 for short records, else 8, 16, 32, ..."""
     if samples <= most:
         return 1
     return max(_PARTS_OF_BLOCK, 2 ** int(np.ceil(np.log2(samples / most))))
@@ -72,7 +72,7 @@ def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarr
 
 
 def _despiked(velocity: np.ndarray, noise: Noise) -> np.ndarray:
-    """Replace single samples that deviate far from their neighbours' median."""
+    """Return a velocity with spikes replaced by the median of the neighbouring samples."""
     median = running_median(velocity)
     limit = limits.MIN_SPIKE_OVER_NOISE.value * np.sqrt(noise.variance(median))
     limit = np.maximum(limit, limits.MIN_RELATIVE_SPIKE.value * np.abs(median))
@@ -91,11 +91,11 @@ def _locate(
     t, v = _blocks(time, velocity, size)
     if noise is None:
         noise = estimate_noise(v, floor / np.sqrt(size))
-        # a steady reading may be off by half a step without scatter
+        # a steady rounded reading may be off by half a step, although it does not scatter
         step = quantum(velocity)
         step = 0.0 if is_commanded(velocity, step) else step
         noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
-    else:  # the parent's noise per sample, averaged over a block
+    else:  # given per sample: that of the search before
         noise = noise.scaled(size**-0.5)
     single = noise.scaled(size**0.5)
     if rest_speed is None:
@@ -148,7 +148,7 @@ def _leftover(
     first: int,
     last: int,
 ) -> list[VelocityPiece]:
-    """Search again, with finer blocks, between two accepted pieces."""
+    """Return the pieces of the interval between two accepted pieces, found with finer blocks."""
     if first >= last:
         return []
     if last - first == time.size:  # nothing was kept: continue with shorter intervals

@@ -1,4 +1,4 @@
-"""Intervals of a run as segments: trimmed, with speed, distance and labels."""
+"""Segments from the intervals of a run: trimmed, with speed, distance and labels."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def measured(
     position_range: tuple[str | float, str | float] | None,
     trimmed: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> xr.Dataset:
-    """Return the intervals of a run as from `find_segments`: trimmed, with speed and distance.
+    """Return the result of `find_segments` from a run's intervals: trimmed, with speed, distance.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def measured(
 def _narrow(
     run: xr.Dataset, start: np.ndarray, stop: np.ndarray, low: float, high: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return start and end of each segment narrowed to the part between two positions."""
+    """Return start and end times of each segment's part between two positions."""
     if "position" not in run:
         raise AnalysisError(
             f"{name_of(run)}: position_range is given, but the run has no 'position'"
@@ -153,12 +153,12 @@ def _mean_slope(
         span = part[-1] - part[0]
         place = 2 * (part - part[0]) / span - 1
         terms = np.polynomial.legendre.legfit(place, position[first[i] : last[i]], degree)
-        result[i] = 2 * terms[1::2].sum() / span  # the even terms are equal at both ends
+        result[i] = 2 * terms[1::2].sum() / span  # the even terms are equal at both ends and cancel
     return result
 
 
 def _label(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Return the median of the run's label over each segment, NaN if none."""
+    """Return the median of a label, e.g. the set load, over each segment; NaN if unknown."""
     result = np.full(first.size, np.nan)
     for i in one_by_one(range(first.size)):
         part = values[first[i] : last[i]]

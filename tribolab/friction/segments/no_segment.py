@@ -10,12 +10,12 @@ from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.strokes import find_strokes
 
-# a sine covers the middle half of its way in a third of the time
+# a sine covers the middle half of its stroke in a third of the time
 _SAMPLES_OF_STROKE = 3 * limits.MIN_SAMPLES_OF_MIDDLE.value
 
 
 def add_needed_rate(run: xr.Dataset, segments: xr.Dataset) -> xr.Dataset:
-    """State the samples of a stroke, and the rate it needs, if they are too few for a segment."""
+    """Add the samples per stroke and the sampling rate needed, if too low for a segment."""
     if segments.sizes["segment"] or not {"position", "sliding_velocity"} & set(run.data_vars):
         return segments
     try:

@@ -11,14 +11,12 @@ from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
 from tribolab.friction.segments import limits
 
-LAG_BLOCKS = 4  # distance of blocks, or windows, at which short-correlated noise is independent
-
-
+LAG_BLOCKS = 4  # distance, in blocks or windows, beyond which noise counts as uncorrelated
 HEIGHT_DIGITS = 9  # digits of a peak height: breaks that differ by less are equally high
 
 
 class Noise(NamedTuple):
-    """Noise of one block: standard deviation sqrt(floor^2 + (r(v) * v)^2).
+    """Noise of a block's velocity v [m/s]: standard deviation sqrt(floor^2 + (r(v) * v)^2).
 
     `speed` [m/s] ascends, and `relative` is r at these speeds; between them r is interpolated over
     the logarithm of speed.
@@ -38,7 +36,7 @@ class Noise(NamedTuple):
         return self.floor**2 + (share * size) ** 2
 
     def scaled(self, factor: float) -> Noise:
-        """Return the noise of larger or smaller blocks."""
+        """Return the noise of blocks of another size, by a factor of the standard deviation."""
         return Noise(self.floor * factor, self.speed, self.relative * factor)
 
 
@@ -121,15 +119,14 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     top = float(middle.max()) if middle.size else 0.0
     if top == 0:
         return Noise(least, nothing, nothing)
-    # offset: the highest speed, and whole decades below it, are not at the edge of a bin
+    # the offset keeps the highest speed, and decades below it, off the edges of bins
     bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8)) + 1e-6).astype(int)
     levels = []
     for group in np.unique(bins):
         inside = bins == group
         if np.count_nonzero(inside) >= 8:
-            # a ramp has first differences, but no second ones; correlated noise has small second
-            # differences between neighbours, but larger ones between distant blocks; digits repeat,
-            # and hide at one of the distances
+            # first differences include ramps, second ones do not. Correlated noise is small between
+            # neighbours, larger between distant blocks; rounding may hide noise at one distance
             spread = max(
                 _spread(near[inside]), min(_spread(difference[inside]), _spread(bend[inside]))
             )
@@ -146,7 +143,7 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
         return Noise(floor, nothing, nothing)
     speed, spread, share = speed[known], spread[known], share[known]
     relative = np.sqrt(np.maximum(spread**2 - floor**2, 0)) / speed
-    # bins with few blocks are ramps, reversals or a short plateau: no worse than the best
+    # speeds with few blocks are ramps, reversals or short plateaus: limit their noise to the best
     moves = speed > 3 * floor
     best = relative[moves].min() if moves.any() else np.inf
     relative = np.where(

@@ -1,4 +1,4 @@
-"""Pieces of a velocity record: joined if equal, and reclassified if the data do not prove them."""
+"""Plateaus, ramps and rests of a velocity record: join equal ones, reclassify doubtful ones."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _is_folded_noise(velocity: np.ndarray) -> bool:
 def trimmed(
     data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
-    """Keep the part of each plateau with constant speed; the rest becomes ramp.
+    """Keep the part of each plateau with constant speed; the rest becomes a ramp.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def _time_to_plateau(time: np.ndarray, pieces: list[VelocityPiece], index: int, 
 
 
 def _merge_pauses(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Merge a short pause into a long ramp that continues in the same direction."""
+    """Merge a short plateau into a long ramp that continues after it in the same direction."""
     result = list(pieces)
     for i in range(1, len(pieces) - 1):
         before, piece, after = pieces[i - 1 : i + 2]

@@ -1,7 +1,5 @@
 """Plateaus of a noisy velocity, from blocks at many scales.
 
-Works on arrays of velocity, independent of files and forces.
-
 Notes
 -----
 1. Neighbouring window means are compared at every scale W = 1, 2, 4 ... blocks (moving-sum
@@ -27,7 +25,8 @@ from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import HEIGHT_DIGITS, LAG_BLOCKS, Noise
 
 _COST_DIGITS = 6  # digits of a cost: mergers that differ by less have equal cost
-_ROUNDING_OF_SQUARES = 1e-11  # relative to the squares: smaller residuals of a line are rounding
+# smaller squares of residuals, relative to all squares, are rounding errors
+_ROUNDING_OF_SQUARES = 1e-11
 
 
 class Pieces(NamedTuple):
@@ -44,7 +43,7 @@ class Pieces(NamedTuple):
 def find_breaks(
     velocity: np.ndarray, noise: Noise, resolution: float, rest_speed: float
 ) -> np.ndarray:
-    """Return the blocks at which the mean velocity changes, by moving sums from fine to coarse."""
+    """Return the indices of blocks at which the mean velocity changes, at any scale."""
     m = velocity.size
     total = np.concatenate([[0.0], np.cumsum(velocity)])
     breaks = np.zeros(0, dtype=int)
@@ -98,13 +97,13 @@ def _bends(total: np.ndarray, noise: Noise, width: int, far: int, k: np.ndarray)
 
 
 def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
-    """Return the highest candidates at least `width` apart."""
+    """Return the positions of the highest peaks that are at least `width` apart."""
     if position.size == 0:
         return position
     if width == 1:
         return position
-    # candidates of one cluster are close together: the highest of each bin, then thin out. From
-    # rest all are equally high: rounding selects the earliest
+    # the highest excludes those close to it. At a start from rest all are equally high: rounding
+    # selects the earliest
     order = np.argsort(-np.round(height, HEIGHT_DIGITS), kind="stable")
     taken = np.zeros(position[-1] + width + 2, dtype=bool)
     chosen = []

@@ -30,7 +30,8 @@ from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import running_median
 
 _FITTED_READINGS = 512  # readings of a fit; more are averaged
-_OUTLIER_SHARES = {False: 0.2, True: 0.02}  # of the range; True: positions
+# smallest outlier over the range of velocities (False), positions (True)
+_OUTLIER_SHARES = {False: 0.2, True: 0.02}
 _SIDE_LENGTHS = (0.5, 1.0)  # lengths of the neighbourhood examined, relative to the piece
 _END_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # trial shifts of a piece's end, relative to its length
 _TURN_PLACES = np.linspace(-0.8, 0.8, 17)  # trial positions of a turn, relative to half the window
@@ -90,7 +91,7 @@ def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
 
 
 def _columns(readings: Readings, place: np.ndarray, motion: list[np.ndarray]) -> np.ndarray:
-    """Return velocities at the places, integrated if positions were recorded."""
+    """Return basis functions of a motion as columns; integrated if positions were recorded."""
     columns = np.stack(motion, axis=1)
     if not readings.is_position:
         return columns
@@ -193,7 +194,7 @@ def _is_level(
         others += misfits
         best = int(np.argmin([fit.variance for fit, _ in misfits]))
         turns, width = turns[best] + width * np.linspace(-1, 1, 11), width / 5
-    # the number of readings for all is that of the best-fitting motion
+    # all fits are compared at the number of effective readings of the best one
     count = min(levels + others, key=lambda misfit: misfit[0].variance)[0].samples
 
     def schwarz(fits: list[tuple[Fit, int]]) -> float:
@@ -209,7 +210,7 @@ def _is_level(
 def _levels(
     place: np.ndarray, corners: tuple[float, float], sides: tuple[bool, bool]
 ) -> list[tuple[list[np.ndarray], int]]:
-    """Return levels with a line on each side that has a ramp, for slightly shifted corners."""
+    """Return basis functions of a plateau with straight flanks, for several corner positions."""
     size = corners[1] - corners[0]
     levels = []
     for before in _END_SHIFTS if sides[0] else (None,):
@@ -229,5 +230,5 @@ def _turn(place: np.ndarray, at: float) -> list[np.ndarray]:
 
 
 def _motions(place: np.ndarray) -> list[tuple[list[np.ndarray], int]]:
-    """Return smooth motions: polynomials of degree 1 to 4."""
+    """Return basis functions of smooth motions: polynomials of degree 1 to 4."""
     return [(list(legendre.legvander(place, degree).T), 0) for degree in (1, 2, 3, 4)]

@@ -11,15 +11,16 @@ from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import quantum
 
 _DIGIT_SAMPLE = 8192  # readings sufficient to find their last digit
-_DIGIT_ROUNDING = 0.01  # of a digit: rounding by arithmetic
-_RATE_SAMPLES = 8  # samples on each side that determine the rate
+_DIGIT_ROUNDING = 0.01  # rounding errors of arithmetic, relative to a digit
+_RATE_SAMPLES = 8  # samples on each side of a jump that determine the usual rate
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     """Estimate the standard deviation of the position readings [m].
 
-    From their distance to the chord of both neighbours, which is zero at constant speed. At least
-    the error of rounding to the last digit, which a regular pattern of digits may hide.
+    It is found from the distance of each reading to the line between its neighbours, which is zero
+    at constant speed. It is at least the rounding error, which a regular pattern of digits may
+    hide.
     """
     if time.size < 3:
         return 0.0
@@ -107,7 +108,7 @@ def is_rounding(position: np.ndarray, noise: float) -> bool:
 
 
 def _find_jumps(time: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Return the samples after which the position jumps far away."""
+    """Return the indices of the samples after which the position jumps far."""
     least = limits.MIN_JUMP.value * float(np.ptp(position)) if position.size else 0.0
     least = max(least, limits.MIN_DIGITS_OF_JUMP.value * quantum(position))
     parts = [
@@ -122,7 +123,7 @@ def _find_jumps(time: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Join a position record at jumps without motion: reset to zero, or wrapped.
+    """Return a position record without jumps that are no motion: resets to zero, and wraps.
 
     Parameters
     ----------
@@ -171,7 +172,7 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
 
 
 def _rates(time: np.ndarray, position: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return the rate from some samples to the next ones; NaN if no time passes."""
+    """Return the rate of change from given samples to the next ones; NaN if no time passes."""
     spacing = time[at + 1] - time[at]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(spacing > 0, (position[at + 1] - position[at]) / spacing, np.nan)
@@ -192,7 +193,7 @@ def block_slopes(
 
 
 def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return mean time and slope of blocks in rows, as `block_slopes`."""
+    """Return mean time and slope of each block, one per row, without outliers."""
     middle = t.mean(axis=1, keepdims=True)
     t, x = t - middle, x - x.mean(axis=1, keepdims=True)
     slope = (t * x).sum(axis=1) / (t * t).sum(axis=1)
@@ -211,9 +212,9 @@ def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def velocity_blocks(
     time: np.ndarray, position: np.ndarray, least: int = limits.MIN_SAMPLES_OF_BLOCK.value
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """Return the velocity of blocks just long enough for a slope accurate to a few percent.
+    """Return velocities from slopes over blocks, which are as long as an accuracy of 3 % needs.
 
-    Accurate at the speeds that cover most of the distance; slower motion is examined again.
+    It is reached at the speeds that cover most of the distance, not for slower motion.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ def begins_of_specimens(run: xr.Dataset) -> np.ndarray:
 
 
 def apart(run: xr.Dataset, stretches: list[Stretch]) -> list[Stretch]:
-    """Return intervals cut at the start of another specimen.
+    """Return the intervals of a run, cut where another specimen starts.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Standstills of the recorded position while the recorded velocity is not zero."""
+"""Standstills of the slider by its position, while the recorded velocity is not zero."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from tribolab.friction.segments.limits import (
 from tribolab.friction.segments.noise import quantum
 from tribolab.friction.segments.stretches import Stretch, track
 
-_BLOCK_COUNTS = (32, 16, 8)  # blocks per segment: as many as the noise of the position allows
+# numbers of blocks per segment, tried until the noise of the position allows it
+_BLOCK_COUNTS = (32, 16, 8)
 
 
 def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list[Stretch], float]:
@@ -66,7 +67,7 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
 
 
 def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> int:
-    """Return the number of samples in which the position is resolved; 0 if none."""
+    """Return the block length, in samples, that resolves the speed by the position; 0 if none."""
     if stretch.kind != "constant" or not stretch.velocity:
         return 0
     for parts in _BLOCK_COUNTS:
@@ -80,7 +81,7 @@ def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> in
 
 
 def _standstills(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return first and last block of each standstill, from the ratio of both speeds."""
+    """Return first block and end of each standstill, from the ratio of the two speeds."""
     slow = share < MIN_SHARE_OF_SPEED.value
     edges = np.flatnonzero(np.diff(np.concatenate([[False], slow, [False]])))
     begin, end = edges[::2], edges[1::2]
@@ -91,7 +92,7 @@ def _standstills(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _split(stretch: Stretch, time: np.ndarray, begin: np.ndarray, end: np.ndarray) -> list[Stretch]:
-    """Return an interval in sliding parts and, from sample to sample, parts at rest."""
+    """Return an interval split into sliding parts and the given parts at rest."""
     result, at = [], 0
     ends = [*time.tolist(), stretch.stop]
     for a, b in zip(begin.tolist(), np.minimum(end, time.size).tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""Intervals of a run from its velocity, position, steps or set speed."""
+"""Intervals of sliding and rest of a run, from its velocity, position, steps or set speed."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from tribolab.friction.segments.pieces import ConstancyLimits, VelocityPiece, mo
 from tribolab.friction.segments.turns import strokes_within
 from tribolab.friction.time_weights import without_gaps
 
-_INTERVALS_OF_GAP = 4  # intervals on each side of a pause that are compared with it
+_INTERVALS_OF_GAP = 4  # sampling intervals on each side of a pause, with which it is compared
 
 
 class Stretch(NamedTuple):
-    """Interval of the run [s] and its kind; "constant" makes it a segment."""
+    """Interval of a run [s], its kind ("constant": a segment) and its mean velocity [m/s]."""
 
     start: float
     stop: float
@@ -37,7 +37,7 @@ def name_of(run: xr.Dataset) -> str:
 
 
 def velocity_source(run: xr.Dataset) -> str:
-    """Return the source of the speed of the run, the best one available."""
+    """Return the best source of a run's speed: recorded, position, step or set speed."""
     stated = "set_speed" in run or "set_speed_m_s" in run.attrs
     clocked = RunAttributes.from_attrs(run.attrs).time_source != "row number"
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
@@ -48,7 +48,7 @@ def velocity_source(run: xr.Dataset) -> str:
     if "step" in run:
         return "step"
     if "sliding_velocity" in run or ("position" in run and (clocked or not stated)):
-        # only NaN: leads to an empty result with a reason
+        # all values are NaN: the run gets no segments, but a reason
         return "recorded" if "sliding_velocity" in run else "position"
     if stated:
         return "set speed"
@@ -70,7 +70,7 @@ def velocity_source(run: xr.Dataset) -> str:
 
 
 def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return time and values without values that are not finite."""
+    """Return the times and values of a signal at the samples where it is finite."""
     time, values = run["time"].values, np.asarray(run[name].values, dtype=float)
     if np.isfinite(values.sum()):  # the sum is finite if all values are
         return time, values
@@ -79,13 +79,13 @@ def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return time and position, if recorded, joined at resets of the sensor."""
+    """Return times and positions of the finite samples, without jumps by sensor resets."""
     time, position = finite(run, "position")
     return time, slopes.without_resets(time, position)[0]
 
 
 def of_points(run: xr.Dataset) -> list[Stretch]:
-    """Return an interval of zero length for each row of an instrument's results."""
+    """Return an interval of zero length for each row of a file whose rows are results."""
     time = run["time"].values
     name = next((n for n in ("sliding_velocity", "set_speed") if n in run), "")
     if not name:
@@ -125,17 +125,17 @@ def from_position(
     pieces = moving(time, [_with_slope(time, position, p) for p in pieces], constancy)
     if constancy.rest_speed is None:
         pieces = _mark_dwells(time, pieces, slopes.position_noise(time, position))
-    share = 0.25  # a straight line across a pause shows constant speed
+    share = 0.25  # longer pauses are allowed: the position shows the mean speed across them
     return _split_at_gaps(run, time, pieces, constancy, max_gap, share)
 
 
 def _by_slopes(
     time: np.ndarray, position: np.ndarray, constancy: ConstancyLimits, least: int
 ) -> list[VelocityPiece]:
-    """Return pieces from slopes over blocks, with longer blocks for slow motion."""
+    """Return velocity pieces from slopes of the position over blocks, longer for slow motion."""
     t, v, size, error = slopes.velocity_blocks(time, position, least)
     fewest = constancy._replace(min_samples=max(3, constancy.min_samples // size))
-    # blocks within one digit show no noise, next to blocks that contain a whole step
+    # a block of rounded positions shows no noise, or a whole step: assume at least the usual error
     noise = slopes.position_noise(time, position)
     floor = error if slopes.is_rounding(position, noise) else 0.0
     blocks = locate(t, v, fewest, floor)
@@ -166,7 +166,7 @@ def _with_slope(time: np.ndarray, position: np.ndarray, piece: VelocityPiece) ->
 def _mark_dwells(
     time: np.ndarray, pieces: list[VelocityPiece], noise: float
 ) -> list[VelocityPiece]:
-    """Reclassify as rest a motion smaller than the noise of a reading: a dwell between strokes."""
+    """Reclassify plateaus that cover no more than the position noise as rest: dwells at turns."""
     return [
         piece._replace(kind="at rest")
         if piece.kind == "constant"
@@ -219,7 +219,7 @@ def _split_at_gaps(
     max_gap: float | None,
     share: float,
 ) -> list[Stretch]:
-    """Return pieces in run time, split at gaps, where samples are missing or not numbers."""
+    """Return the pieces as intervals of time, split where samples are missing or not numbers."""
     result: list[Stretch] = []
     whole = run["time"].values
     if time[0] > whole[0]:
@@ -251,7 +251,7 @@ def _is_gap(time: np.ndarray, index: int, piece: VelocityPiece) -> bool:
 def _gaps(
     time: np.ndarray, piece: VelocityPiece, max_gap: float | None, share: float
 ) -> np.ndarray:
-    """Return the samples of a plateau or ramp that precede a long pause."""
+    """Return the indices of samples of a plateau or ramp before a long pause."""
     inside = time[piece.first : piece.last]
     if piece.kind not in ("constant", "ramp") or inside.size < 2:
         return np.zeros(0, dtype=int)
@@ -262,7 +262,7 @@ def _gaps(
     if longest is None:
         usual = float(median(spans)) / step
         longest = max(20 * usual, share * float(inside[-1] - inside[0]))
-    wide = np.flatnonzero(spans > longest)  # such a pause can only be there
+    wide = np.flatnonzero(spans > longest)  # only these can contain such a pause
     parts = []
     for block in wide:
         near = max(int(block) * step - _INTERVALS_OF_GAP, 0)
@@ -275,7 +275,7 @@ def _gaps(
 
 
 def from_steps(run: xr.Dataset, min_samples: int) -> list[Stretch]:
-    """Return each step (or stroke) of the instrument as a segment."""
+    """Return an interval for each step (or stroke) that the instrument numbered."""
     time, step = run["time"].values, run["step"].values
     known = ~np.isnan(step.astype(float))
     edges = np.flatnonzero((step[1:] != step[:-1]) & (known[1:] | known[:-1])) + 1
@@ -326,7 +326,7 @@ def _set_speed(run: xr.Dataset, first: int, last: int) -> float:
 
 
 def _signed(run: xr.Dataset, first: int, last: int, speed: float) -> float:
-    """Return the set speed with the sign of the mean friction; 0 if the sign is unknown."""
+    """Return the set speed with the sign of the mean friction; positive if friction is unknown."""
     for name in ("friction_force", "friction_coefficient"):
         if name in run:
             values = run[name].values[first:last]

@@ -22,7 +22,7 @@ class Strokes(NamedTuple):
     first
         Index of the first sample of each stroke, and of the sample after the last (stroke + 1).
     way
-        +1 or -1 (stroke).
+        Direction, +1 or -1 (stroke).
     length
         Distance between the turns [m] (stroke).
     place
@@ -30,7 +30,7 @@ class Strokes(NamedTuple):
     usual
         Whether a stroke has the usual length, and is not a small motion at a turn (stroke).
     paused
-        Whether a stroke has a long unrecorded part, and may be parts of two (stroke).
+        Whether a long part of a stroke was not recorded; it may be parts of two (stroke).
     """
 
     first: np.ndarray
@@ -42,7 +42,7 @@ class Strokes(NamedTuple):
 
     @property
     def number(self) -> np.ndarray:
-        """Number of each sample's stroke (time), -1 outside."""
+        """Index of the stroke that each sample belongs to (time); -1 for none."""
         size = self.place.size
         index = np.searchsorted(self.first, np.arange(size), side="right") - 1
         return np.where((index >= 0) & (index < self.way.size), index, -1)
@@ -59,8 +59,8 @@ def find_strokes(run: xr.Dataset) -> Strokes:
     Returns
     -------
     Strokes
-        From turn to turn: a position turns if it returns by a quarter of its range; a velocity, if
-        its sign changes at more than a fifth of its usual magnitude.
+        Each extends from one turn to the next. A position turns if it returns by a quarter of its
+        range; a velocity, if its sign changes at more than a fifth of its usual magnitude.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def _friction_reverses(strokes: Strokes, friction: np.ndarray) -> bool:
 
 
 def _paused(time: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """Return whether a quarter of a stroke or more is without samples (stroke)."""
+    """Return a mask of strokes that lack samples for a quarter of their duration (stroke)."""
     pause = np.diff(time[first[0] : first[-1] + 1])
     longest = np.maximum.reduceat(pause, first[:-1] - first[0])
     return longest > np.maximum(
@@ -148,16 +148,16 @@ def _paused(time: np.ndarray, first: np.ndarray) -> np.ndarray:
     )
 
 
-def _settings(run: xr.Dataset) -> np.ndarray | None:
-    """Return the number of each sample's step if the steps of a crank have strokes of their own."""
+def _crank_steps(run: xr.Dataset) -> np.ndarray | None:
+    """Return each sample's step number if the crank's stroke differs between steps; else None."""
     if "stroke_m_of_steps" not in run.attrs or "step" not in run:
         return None
     return np.asarray(run["step"].values)
 
 
 def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Return a mask of strokes of usual length within one step (stroke)."""
-    step = _settings(run)
+    """Return a mask of strokes within one step and not much shorter than its median (stroke)."""
+    step = _crank_steps(run)
     if step is None:
         return length > limits.MIN_LENGTH_OF_STROKE.value * median(length)
     own = step[first[:-1]]
@@ -220,7 +220,7 @@ def _by_velocity(run: xr.Dataset) -> _Parts:
 
 def _limit(run: xr.Dataset, velocity: np.ndarray) -> float | np.ndarray:
     """Return the speed below which the direction of a sample is unknown [m/s]."""
-    step = _settings(run)
+    step = _crank_steps(run)
     if step is None:
         return limits.MIN_SPEED_OF_STROKE.value * float(np.percentile(np.abs(velocity), 90))
     limit = np.zeros(velocity.size)
@@ -239,7 +239,7 @@ def _nothing(size: int) -> _Parts:
 def middle_parts(
     run: xr.Dataset, share: float
 ) -> tuple[Strokes, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the strokes of a run, and the position in time of the middle share of each.
+    """Return the strokes of a run, and start and end times of the middle part of each.
 
     Parameters
     ----------

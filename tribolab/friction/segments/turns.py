@@ -7,12 +7,12 @@ import numpy as np
 from tribolab.friction.segments import limits, slopes
 from tribolab.friction.segments.pieces import ConstancyLimits, VelocityPiece
 
-EQUAL = 1e-9  # of the range, or of the usual speed: smaller differences count as zero
-_INNER_PARTS = 4  # number of parts of the inner part whose speeds are compared
+EQUAL = 1e-9  # smaller differences, relative to the range or usual speed, count as zero
+_INNER_PARTS = 4  # number of parts of a stroke (without its ends) whose speeds are compared
 
 
 def last_side(values: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:
-    """Return the side where a signal was last: above `high` (+1), below `low` (-1), 0 before.
+    """Return on which side a signal last was: above `high` (1), below `low` (-1), 0 before either.
 
     Parameters
     ----------
@@ -37,13 +37,13 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     tuple
-        (turn) and (turn - 1); empty for fewer than two turns. A turn is the farthest point on one
-        side, between returns by a quarter of the range.
+        Indices (turn) and directions, 1 or -1 (turn - 1); empty for fewer than two turns. A turn is
+        the farthest point on one side, between returns by a quarter of the range.
     """
     low, high = np.percentile(position, [1, 99])
     middle, half = (low + high) / 2, (0.5 - limits.MIN_RETURN_OF_TURN.value) * (high - low)
     state = last_side(position, middle - half, middle + half)
-    # the first change may be an approach to the first side; a start on a side is not a turn
+    # the record may start between the sides, or on one of them: its start is no turn
     change = np.flatnonzero(np.diff(state)) + 1
     if change.size < 2 or not high > low:
         return np.empty(0, dtype=int), np.empty(0, dtype=int)
@@ -154,7 +154,7 @@ def _strokes_of(
 def _straight_part(
     time: np.ndarray, position: np.ndarray, constancy: ConstancyLimits, noise: float
 ) -> tuple[int, int, float] | None:
-    """Return samples and velocity [m/s] of a stroke without its dwells; None if not constant."""
+    """Return sample range and velocity [m/s] of a stroke without dwells; None if not constant."""
     low, high = float(position.min()), float(position.max())
     margin = (1 - limits.INNER_PART_OF_STROKE.value) / 2 * (high - low)
     inside = np.flatnonzero((position > low + margin) & (position < high - margin))

@@ -15,9 +15,9 @@ from tribolab.friction.zero.parts import Doubt, ZeroReference
 from tribolab.friction.zero.without_sliding import stretches_of
 from tribolab.friction.zero.words import of_leak, of_retained_load
 
-# a difference may be an error or real: half width over sigma of a uniform distribution
+# half width over standard deviation of a uniform distribution
 WIDTH_OVER_SIGMA = np.sqrt(3)
-_NEAREST_RESTS = 4  # rests that are compared with a segment
+_NEAREST_RESTS = 4  # nearest rests that are compared with a segment
 _READING_BLOCKS = 5  # blocks of a reading: their scatter includes slow waves and ramps of the load
 
 
@@ -37,14 +37,14 @@ def load_reading(
     friction: np.ndarray,
     zero: ZeroReference,
 ) -> LoadReading:
-    """Return the uncertainty of the load of each segment from the run itself.
+    """Return the uncertainty of each segment's load reading, as far as the run shows it.
 
     Parameters
     ----------
     run, segments, parts
         The run, its segments, and the samples of each.
     pressed, offset
-        Load without the zero of the cell, and that zero [N] (segment).
+        Load minus the zero of the load cell, and that zero [N] (segment).
     friction
         Mean of the friction signal [N] (segment).
     zero
@@ -90,7 +90,7 @@ def _leak(
     friction: np.ndarray,
     zero: ZeroReference,
 ) -> LoadReading:
-    """Compare the load reading while sliding with that of the nearest loaded rest."""
+    """Return the error of the load by cross-talk, which makes sliding differ from loaded rests."""
     rests = stretches_of(run, segments, "at rest") if "omitted" in segments.dims else []
     starts, reads = segments["trimmed_start"].values, pressed + offset
     normal = run["normal_force"].values
@@ -103,7 +103,7 @@ def _leak(
             pressed[i] > 0 and abs(force) > 0 and parts[i].stop - parts[i].start > _READING_BLOCKS
         ):
             continue
-        # drift of the load while sliding also occurs between rest and sliding
+        # a load that drifts while sliding also drifts between rest and sliding
         wanders = _mean_of_blocks(normal[parts[i]])[1] * np.sqrt(_READING_BLOCKS)
         useful = []
         for k in np.argsort(np.abs(middles - starts[i]), kind="stable")[:_NEAREST_RESTS]:
@@ -126,7 +126,7 @@ def _leak(
 
 
 class _Rest(NamedTuple):
-    """Rest: middle [s], readings of load and friction, and the load's standard error [N]."""
+    """Mean time [s] of a loaded rest, its load and friction, and the load's standard error [N]."""
 
     time: float
     normal: float
@@ -135,7 +135,7 @@ class _Rest(NamedTuple):
 
 
 def _loaded_rest(run: xr.Dataset, part: slice, before: bool, load: float) -> _Rest | None:
-    """Read the half of a rest next to a segment, if it has the segment's load."""
+    """Return the readings in the half of a rest next to a segment, if it has the segment's load."""
     half = (part.stop - part.start) // 2
     near = slice(part.start + half, part.stop) if before else slice(part.start, part.start + half)
     time, normal, force = (run[k].values[near] for k in ("time", "normal_force", "friction_force"))
@@ -174,7 +174,7 @@ def _creep(
 
 
 def _loaded_range(normal: np.ndarray, least: float) -> tuple[int, int]:
-    """Return the first and the last sample under load."""
+    """Return the indices of the first and the last sample under load."""
     found: list[int] = []
     for a, b in pieces(0, normal.size):
         own = np.flatnonzero(normal[a:b] > least)
@@ -187,7 +187,7 @@ def _middle_of_tenth(time: np.ndarray, way: int) -> float:
 
 
 def _tenth(values: np.ndarray, order: slice) -> tuple[float, float]:
-    """Return the mean of the first tenth in an order, and its standard error."""
+    """Return the mean of the first tenth of values in a given order, and its standard error."""
     return _mean_of_blocks(values[order][: values.size // 10])
 
 

@@ -1,4 +1,4 @@
-"""Middles of the loops: zero of a force from strokes in both directions, with drift."""
+"""Zero of a force, and its drift, from the middles of friction loops (pairs of strokes)."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tribolab.friction.zero.offsets import Wander, wander
 
 
 class Middles(NamedTuple):
-    """Pairs of strokes in temporal order.
+    """Middles of the friction loops, and drift of the zero, for pairs of strokes in temporal order.
 
     Parameters
     ----------
     member
-        Numbers of the forward and the backward stroke (pair, 2).
+        Indices of the forward and the backward stroke (pair, 2).
     share
         Weights of their forces in the middle [1] (pair, 2).
     time, value
@@ -24,7 +24,7 @@ class Middles(NamedTuple):
     slope
         Drift of the zero at each pair, per second (pair).
     ends, part
-        Pairs between which the slope was taken, and the accepted part of it (pair, 2), (pair).
+        Pairs between which the slope was taken (pair, 2), and share of it that is used (pair).
     """
 
     member: np.ndarray
@@ -39,7 +39,7 @@ class Middles(NamedTuple):
 def middles(
     mean: np.ndarray, load: np.ndarray, sign: np.ndarray, pair: np.ndarray, time: np.ndarray
 ) -> Middles | None:
-    """Return the middle of each pair's loop and its drift; None without a pair.
+    """Return the middle of each pair's friction loop and the drift there; None without a pair.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def middles(
 
 
 class StrokeSums(NamedTuple):
-    """Each force without its zero as a sum over strokes: stroke, weight (segment, term)."""
+    """Strokes and their weights whose weighted sum is each force minus its zero (segment, term)."""
 
     stroke: np.ndarray
     weight: np.ndarray
@@ -187,7 +187,7 @@ def error_of_rows(
 
 
 def _movements(middles: Middles, error: np.ndarray) -> tuple[Wander, Wander]:
-    """Return the change of the zero between loops: total, and beyond a common drift."""
+    """Return the drift of the zero between loops: total, and beyond a common linear drift."""
     order = np.flatnonzero(np.isfinite(middles.value))
     order = order[np.argsort(middles.time[order], kind="stable")]
     value, error, time = middles.value[order], error[order], middles.time[order]

@@ -26,7 +26,7 @@ from tribolab.units.quantities import quantity
 
 _FROM_TORQUE = re.compile(r"\s*(?:\w+|\(\w+ - \w+\))\s*/\s*(?:(?P<arm>\w+)|'(?P<length>[^']+)')\s*")
 _WITHOUT_SIGN = "mean of both directions: recorded without sign"
-# methods that remove an offset from both strokes of a pair, which then are one observation
+# methods that subtract one offset from both strokes of a pair, which then are one observation
 PAIRED = ("half loop", _WITHOUT_SIGN)
 
 
@@ -64,7 +64,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Signs:
-    """Direction of each segment, and the factor applied to its signal first."""
+    """Direction of each segment, and the factor that puts back a lost sign (segment)."""
 
     sign: np.ndarray
     unfold: np.ndarray
@@ -82,7 +82,7 @@ def zero_of_run(
     rests: Zeros | None,
     settings: Settings,
 ) -> tuple[ZeroReference, Signs, np.ndarray]:
-    """Determine the source of the zero of the friction signal.
+    """Return the zero of the friction signal of a run, with its source.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def zero_of_run(
     if (direction > 0).any() and (direction < 0).any() and _lost(fold):
         unfold = sign * (1.0 if median_of_known(mean) >= 0 else -1.0)
     if fold.kind != "signed" and settings.offset != "zero load":
-        rests = None  # rests read only the magnitude of the zero
+        rests = None  # a rectified signal shows only the magnitude of the zero
     pair = _pairs(segments, settings, rests, stated)
     unit = quantity(name).unit
     strokes = StrokeMeans(
@@ -148,7 +148,7 @@ def _lost(fold: Fold) -> bool:
 
 
 def _zero_from_file(run: xr.Dataset, name: str) -> tuple[float, str]:
-    """Return the error of a zero that was removed while reading, and its place."""
+    """Return the error of a zero that was subtracted on reading, and its place in the file."""
     unit = quantity(name).unit
     ending = "" if unit == "1" else f"_{unit}"
     error = float(run.attrs.get(f"{name}_zero_sem{ending}", np.nan))
@@ -197,7 +197,7 @@ def _arm(run: xr.Dataset, name: str) -> float:
 
 
 def _segment_numbers(segments: xr.Dataset) -> np.ndarray:
-    """Return the numbers of the segments in tables, counted from 1 as found."""
+    """Return the segment numbers that tables show: from 1, including rejected segments."""
     if "segment" in segments.coords:
         return segments["segment"].values + 1
     return np.arange(segments.sizes["segment"]) + 1
@@ -236,7 +236,7 @@ def _fold(
     if stated is not None:
         return Fold("rectified", "") if stated else SIGNED
     if SegmentAttributes.from_attrs(segments.attrs).velocity_source not in ("recorded", "position"):
-        return SIGNED  # the direction was derived from the force, or there is none
+        return SIGNED  # the direction is unknown, or was derived from the force
     rest = float(median(rests.value)) if rests is not None else float("nan")
     normal = run["normal_force"].values if "normal_force" in run and parts else None
     pressed = Pressed(normal, parts, max(0.5, limits.MAX_DRIFT_OF_LOAD_ZERO.value))

@@ -11,9 +11,9 @@ from tribolab.friction.zero import limits
 
 
 def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
-    """Return the number of the pair of each segment, -1 for none (segment).
+    """Return the pair number of each segment; -1 without a partner (segment).
 
-    Neighbours in time of opposite direction pair if their speeds differ by no more than
+    Successive strokes in opposite directions pair if their speeds differ by no more than
     `tolerance` of their mean. If the run has set speeds and `tolerance` is at most the default,
     these must agree, too.
     """
@@ -75,7 +75,7 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
 
     scale = apart.mean()
     parts = np.stack([np.ones(apart.size), apart / scale], axis=1)
-    # the weights depend on the result; a few iterations converge. They begin equal: steps with a
+    # the weights depend on the result: iterate. At first they are equal, because steps with a
     # small error of their own would otherwise dominate a step that no error explains
     expected = np.full(apart.size, np.max(excess + noise) + noise.max())
     if not expected[0] > 0:  # simulated without noise: no differences

@@ -10,7 +10,7 @@ from tribolab.friction.zero.parts import Doubt, StrokeMeans, doubt
 
 
 def of_parts(strokes: StrokeMeans) -> tuple[Doubt, ...]:
-    """Doubt pairs with one sign in both directions, if other pairs change sign.
+    """Return doubts about pairs with one sign in both directions, if other pairs change sign.
 
     Half the difference of such a pair is not friction: equal levels mu N give zero.
 

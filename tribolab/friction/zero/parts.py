@@ -13,7 +13,7 @@ from tribolab.friction.zero.rests import Zeros
 
 @dataclass(frozen=True)
 class StrokeMeans:
-    """Means of the strokes, for the zero: one entry for each segment.
+    """Means of the strokes from which the zero is determined: one value for each segment.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class KnownOfZero:
     others
         Zeros of other runs on the same instrument [u].
     tolerance
-        Relative difference of speed up to which friction is stated to be equal.
+        Relative difference of speed up to which the user states that friction is equal.
     read
         Standard error of a zero that was read at one place of the file and subtracted [u].
     read_from
@@ -78,7 +78,7 @@ class KnownOfZero:
 
 
 class Doubt(TypedDict):
-    """Doubt about the zero of some segments: its check, and the measurement that resolves it."""
+    """Doubt about the zero of some segments: check that reports it, and how to resolve it."""
 
     check: str
     status: str
@@ -99,13 +99,14 @@ class ZeroReference:
     slope
         Its drift [u/s] (segment).
     error
-        Function: own errors of the strokes -> errors of their forces without the zero (segment).
+        Function that returns the errors of the forces minus their zero, from the errors of the
+        forces themselves (segment).
     zero_from
         Source of the zero, in words (segment).
     half_loop
         Half loop of each stroke's pair, without the drift of the zero [u]; NaN without a pair.
     method
-        One word for all: "half loop", "zero load", "stated", "other runs", "none: ...".
+        Source for the whole run: "half loop", "zero load", "stated", "other runs", "none: ...".
     doubts
         Doubts about the zero.
     stated

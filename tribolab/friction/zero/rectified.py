@@ -12,12 +12,12 @@ from tribolab.arrays.chunks import anywhere, one_by_one
 from tribolab.arrays.medians import median, median_of_known
 from tribolab.friction.zero import limits
 
-# standard deviations from the 5th to 95th percentile
+# standard deviations between the 5th and 95th percentile of normal noise
 _PERCENTILE_WIDTH = float(2 * special.ndtri(0.95))
 
 
 class Pressed:
-    """Contact under load; the usual load is computed at the first use.
+    """Samples under load; the usual load is computed at the first use.
 
     Parameters
     ----------
@@ -50,14 +50,14 @@ class Pressed:
 
 
 class ForceTrace(NamedTuple):
-    """Samples of the force and positions of the strokes, to detect a lost sign.
+    """Force and strokes of a run, from which a lost sign of the force is detected.
 
     Parameters
     ----------
     force
-        (time)
+        The force (time).
     loaded
-        Contact under load.
+        Samples under load.
     parts
         Samples of each trimmed segment, in temporal order.
     mean, error
@@ -92,7 +92,7 @@ class ForceTrace(NamedTuple):
         return bool(np.nanmax(self.turned * self.force[part]) < 0)
 
     def alike(self, number: int) -> bool:
-        """Return whether a segment and the next may be opposite strokes: equal speed."""
+        """Return whether a segment and the next have equal speed, so that they may be a pair."""
         if self.speed is None:
             return True
         slow, fast = sorted(np.abs(self.speed[number : number + 2]).tolist())
@@ -110,7 +110,7 @@ class Fold(NamedTuple):
 
     kind: str
     why: str
-    seen: bool = False  # several readings show the force passing its middle
+    seen: bool = False  # several readings show how the force passes its middle
 
 
 SIGNED = Fold("signed", "")
@@ -155,7 +155,8 @@ def folded(trace: ForceTrace) -> Fold:
         return SIGNED
     turned = 1.0 if median_of_known(trace.mean) >= 0 else -1.0
     trace = trace._replace(turned=turned, mean=turned * trace.mean, rest=turned * trace.rest)
-    # a stroke below zero, by its mean beyond its error or by all readings, has a sign
+    # a negative stroke (in its mean beyond its error, or in all readings) shows that there is a
+    # sign
     if (trace.mean[known] < -3 * np.nan_to_num(trace.error[known])).any():
         return SIGNED
     if any(trace.is_below(trace.parts[i]) for i in one_by_one(np.flatnonzero(known))):
@@ -166,7 +167,7 @@ def folded(trace: ForceTrace) -> Fold:
 
 
 def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
-    """Return the decision for recorded directions and a force of one sign."""
+    """Decide from the turns whether the sign was lost, if directions were recorded."""
     forward, backward = (
         np.flatnonzero(known & (trace.sign * direction > 0)) for direction in (1, -1)
     )
@@ -185,7 +186,7 @@ def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
         return Fold(
             "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
         )
-    # of the mean over the strokes of a direction
+    # standard error of the mean over the strokes of a direction
     strokes = min(forward.size, backward.size)
     error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2) / strokes)
     differ = high - low > max(limits.MIN_ERRORS_OF_LEVEL.value * error, 1e-6 * high)
@@ -202,11 +203,11 @@ def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
 
 
 def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
-    """Return shares of turns that dip, pass below, go straight, clearly straight; their number.
+    """Return shares of turns (dip, below, straight, clearly straight), and the number of turns.
 
-    A turn is "straight" if it has readings between the two levels, beyond their noise, and none
-    below them; if the levels overlap, at least ten readings. "Clearly straight" requires several
-    readings.
+    "Dip" and "below" are readings far below both levels. A turn is "straight" if it has readings
+    between the two levels, beyond their noise, and none below them; if the levels overlap, at least
+    ten readings. "Clearly straight" requires several readings.
     """
     dips, below, straight, clear, seen = 0, 0, 0, 0, 0
     for i in one_by_one(range(len(trace.parts) - 1)):
@@ -231,7 +232,7 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
         ):
             below += 1
         elif top < bottom:
-            # farther from either level than the largest noise among so many readings
+            # between the levels, farther from both than the noise of so many readings reaches
             far = _noise_quantile(turn.size) / _PERCENTILE_WIDTH
             above = (low + top) / 2 + far * (top - low)
             beneath = (bottom + highest) / 2 - far * (highest - bottom)
@@ -246,12 +247,12 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
 
 
 def _noise_quantile(count: int) -> float:
-    """Return the standard deviations that the largest of `count` readings exceeds by chance."""
+    """Return how many standard deviations the largest of `count` readings may deviate by chance."""
     return float(special.ndtri(1 - limits.NOISE_PASSES.value / count))
 
 
 def _decide_one_way(trace: ForceTrace) -> Fold:
-    """Return the decision without recorded direction, if a force touches zero at the reversals."""
+    """Decide from the turns whether the sign was lost, if no direction was recorded."""
     if len(trace.parts) < 2 or anywhere(lambda part: _negative(trace.turned * part), trace.force):
         return SIGNED
     level = float(median_of_known(trace.mean))
@@ -290,7 +291,7 @@ def _touches_zero(trace: ForceTrace, number: int) -> bool | None:
     if turn.size < 3 or stroke.size < 3:
         return None
     lowest = int(np.argmin(turn))
-    # of the four steps around the minimum a V has three large ones, a flat stop at most two
+    # a V has three large steps among the four around its minimum, a flat stop at most two
     steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
     # differences between neighbours: slow waves in the stroke are not noise
     noise = median(np.abs(np.diff(stroke))) / 0.954

@@ -1,4 +1,4 @@
-"""Source of the zero of the friction force for each segment, with doubts."""
+"""Choice of the source of the zero of the friction force for each segment, with doubts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
 def find_reference(
     strokes: StrokeMeans, known: KnownOfZero, wanted: str, fold: Fold, name: str
 ) -> ZeroReference:
-    """Determine the source of the zero of each segment.
+    """Return the zero of each segment and its source.
 
     Parameters
     ----------
@@ -92,10 +92,10 @@ def find_reference(
 def _correct_tilt(strokes: StrokeMeans, rests: Zeros | None, loops: Middles) -> Middles:
     """Return the middles of the loops corrected for tilt, if they then agree better.
 
-    With a tilt the load reads less in one direction and more in the other, in proportion to
-    friction. Middles weighted with such loads change with friction, like a drifting zero. Unloaded
-    rests determine the tilt. Cross-talk shifts the middles alike but not the loads; so the loads
-    with the better agreement of the middles are used.
+    With a tilt the load reading is too low in one direction and too high in the other, in
+    proportion to friction. Middles weighted with such loads vary with friction, like a drifting
+    zero. Unloaded rests determine the tilt. Cross-talk shifts the middles in the same way, but not
+    the loads. Therefore those loads are used, corrected or not, for which the middles agree better.
     """
     if rests is None or not np.isfinite(loops.value).sum() > 1:
         return loops
@@ -155,7 +155,7 @@ def _rest_zeros(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroR
 
 
 def _loop_zeros(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> ZeroReference:
-    """Return zeros from the middles of the loops; strokes without a partner use rests, if any."""
+    """Return zeros from the middles of the loops; for strokes without a partner, from rests."""
     good = np.isfinite(loops.value)
     pair = np.where((strokes.pair >= 0) & good[strokes.pair.clip(0)], strokes.pair, -1)
     paired = pair >= 0
@@ -189,7 +189,7 @@ def _loop_zeros(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> Zer
 def _compare(
     strokes: StrokeMeans, known: KnownOfZero, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
-    """Compare the middles of the loops with an independent zero.
+    """Return the zero after comparing the middles of the loops with an independent zero.
 
     If the two differ by more than their errors and by more than `MAX_ASYMMETRY` of friction,
     friction depends on direction, or the load tilts the zero: the other zero is used, with a doubt.
@@ -249,7 +249,7 @@ def _compare(
 def _doubt_asymmetry(
     strokes: StrokeMeans, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
-    """Return a doubt if offset and asymmetry cannot be separated."""
+    """Return a doubt if the offset cannot be told from friction that depends on direction."""
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     offset, usual = median_of_known(loops.value), median_of_known(np.abs(half))
     share = float(abs(offset) / usual) if usual > 0 and np.isfinite(offset) else 0.0
@@ -299,7 +299,7 @@ def _outside_zero(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
         return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
     others = np.asarray(known.others, float)
     if others.size > 1 and fold.kind == "signed":
-        # for few runs, the next one scatters as Student's t with size - 1 degrees of freedom
+        # the zero of the next run deviates from those of few runs by Student's t
         few = (
             np.sqrt((1 + 1 / others.size) * max((others.size - 1) / (others.size - 3), 1.0))
             if (others.size > 3)

@@ -12,7 +12,7 @@ from tribolab.core.coverage import NORMAL
 from tribolab.friction.statistics import estimates_of
 from tribolab.friction.zero import limits
 
-_REST_BINS = 100  # in an interval that may be partly without load
+_REST_BINS = 100  # bins of an interval that may be unloaded in part
 
 
 class Zeros(NamedTuple):
@@ -28,7 +28,7 @@ class Zeros(NamedTuple):
         Parameters
         ----------
         time
-            [s] (any one dim)
+            Times [s] (any one dim).
 
         Notes
         -----
@@ -71,7 +71,7 @@ class Zeros(NamedTuple):
 
 
 class PartialContact(NamedTuple):
-    """Rests that read more than the unloaded one: number, excess [N], time of the first [s]."""
+    """Number of rests with more load than the unloaded one, excess [N], time of the first [s]."""
 
     rests: int
     level: float
@@ -79,7 +79,7 @@ class PartialContact(NamedTuple):
 
 
 class Rests(NamedTuple):
-    """Zeros of friction and normal force from unloaded rests, and rejected rests."""
+    """Zeros of friction and normal force from unloaded rests, and rests in partial contact."""
 
     friction: Zeros | None
     normal: Zeros | None
@@ -100,9 +100,10 @@ def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
     -------
     Rests
         Zeros of the friction force and of the normal force, in temporal order; None without an
-        unloaded rest or unloaded motion. A rest reads less than a tenth of the load, and exceeds
-        the lowest rest by no more than noise, unless the zero drifts: then the load of the strokes
-        drifts, too. Rests that read more may be in partial contact.
+        unloaded rest or unloaded motion. In an unloaded rest the load reading
+        is below a tenth of the load, and exceeds that of the lowest rest by no more than noise,
+        unless the zero drifts (then the load of the strokes drifts, too). Rests with a higher
+        reading may be in partial contact.
     """
     rests = _rest_limits(run, segments, load)
     if rests is None:
@@ -139,7 +140,7 @@ def _without_partial(
     run: xr.Dataset,
     segments: xr.Dataset,
 ) -> tuple[list[np.ndarray], PartialContact | None]:
-    """Return levels without rests that exceed the lowest one by more than drift, and the latter."""
+    """Separate rests whose load exceeds the lowest one by more than drift from the others."""
     if len(levels) < 2:
         return levels, None
     reads = np.array([float(np.mean(normal[level])) for level in levels])
@@ -161,7 +162,7 @@ def _zero_drifts(
     reads: np.ndarray,
     segments: xr.Dataset,
 ) -> bool:
-    """Return whether the load of the strokes changes with the readings at rest (drifting zero)."""
+    """Return whether the load of the strokes drifts with the readings at rest, as a zero does."""
     at = np.array([float(time[level].mean()) for level in levels])
     ends = (segments[f"trimmed_{end}"].values for end in ("start", "stop"))
     first, last = (np.searchsorted(time, end) for end in ends)
@@ -173,12 +174,12 @@ def _zero_drifts(
     if loads.max() > limits.LOADS_DIFFER.value * loads.min():
         return True  # with several loads a drift cannot be detected
     zero = np.interp(middle, at, reads)
-    # scatter of the loads after subtracting the zero read at the rests
+    # scatter of the loads minus the zero at the rests
     return bool(np.std(loads - zero) < limits.DRIFT_IN_STROKES.value * np.std(loads))
 
 
 class LightRest(NamedTuple):
-    """Rest [s] with a small normal force [N]: its zero, or a light load."""
+    """Time [s] of a rest with a small normal force [N], which is the zero or a light load."""
 
     start: float
     stop: float
@@ -253,7 +254,7 @@ def _unloaded(
 def _unloaded_parts(
     time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
-    """Return the longest part of each interval with a constant load of zero, at any motion."""
+    """Return the longest part of each interval at a constant load near zero, moving or not."""
     levels = []
     for level in _unloaded(time, normal, intervals, load):
         first, last = int(level[0]), int(level[-1]) + 1
@@ -280,13 +281,13 @@ def _unloaded_parts(
 def level_without_load(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
     """Return the samples of a rest at one level far below the load, if any.
 
-    A reading may be far below zero: at rest nothing pulls, so that it is an offset.
+    A reading far below zero is an offset, because nothing pulls at rest.
     """
     light = first + np.flatnonzero(normal[first:last] < limits.MAX_LOAD_OF_BARE_REST.value * load)
     if light.size < limits.MIN_SAMPLES_OF_REST.value:
         return light
-    # the load ramp may begin in the same rest, and be most of it: the level is where readings are
-    # densest, and distant readings are omitted
+    # a load ramp may take up most of the rest: the level is where readings are densest, and
+    # distant readings are omitted
     ordered = np.sort(normal[light])
     part = light.size // 4
     width = ordered[part:] - ordered[: light.size - part]

@@ -6,11 +6,12 @@ import numpy as np
 
 from tribolab.friction.zero import limits
 
-_LN_SPEED_OF_NEIGHBOURS = np.log(10)  # loops further apart than a decade are not compared
+# loops whose speeds differ by more than a decade are not compared
+_LN_SPEED_OF_NEIGHBOURS = np.log(10)
 
 
 def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool]:
-    """Return the error of the half loop of unequal speeds as friction of either stroke.
+    """Return the error of taking the half loop of two unequal speeds as the friction at either.
 
     Parameters
     ----------
@@ -48,7 +49,7 @@ def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool
     steep = np.full(half.size, limits.SPEED_DEPENDENCE.value) * np.abs(half)
     if not known.any() or not (ratio > 0).any():
         return np.nan_to_num(steep * ratio / 2), False
-    # strokes of equal speed are used; others only without these
+    # strokes of unequal speed are used only if there are no others
     source = known & (ratio <= limits.MAX_SPEED_DIFFERENCE_OF_LOOP.value)
     measured = bool(
         source.any() and np.ptp(place[source]) > limits.MAX_SPEED_DIFFERENCE_OF_LOOP.value

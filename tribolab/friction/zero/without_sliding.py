@@ -1,4 +1,4 @@
-"""Friction signal without rubbing: before any sliding, and without load."""
+"""Friction signal when there is no friction: before any sliding, and without load."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class WithoutSliding(NamedTuple):
 def without_sliding(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None, load: float
 ) -> WithoutSliding:
-    """Return the friction signal before any sliding, and in unloaded strokes.
+    """Return the readings of the friction signal before any sliding, and in unloaded strokes.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def without_sliding(
 
 
 def stretches_of(run: xr.Dataset, segments: xr.Dataset, reason: str) -> list[slice]:
-    """Return the samples of the intervals omitted for a reason."""
+    """Return the index ranges of the intervals omitted for a given reason."""
     time, chosen = run["time"].values, segments["omitted_reason"].values == reason
     starts, stops = (segments[f"omitted_{end}"].values[chosen] for end in ("start", "stop"))
     first, last = (np.searchsorted(time, ends) for ends in (starts, stops))
@@ -58,7 +58,7 @@ def stretches_of(run: xr.Dataset, segments: xr.Dataset, reason: str) -> list[sli
 def _before_sliding(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros, load: float
 ) -> tuple[float, float]:
-    """Read the loaded rest before any sliding; later rests retain friction."""
+    """Return the signal in the loaded rest before any sliding; later rests retain friction."""
     time, force = run["time"].values, run["friction_force"].values
     normal = run["normal_force"].values
     begins = float(segments["start"].values.min(initial=np.inf))
@@ -120,7 +120,7 @@ def of_loaded_and_idle(
 ) -> LoadedAndIdle:
     """Return doubts about friction that a loaded rest or unloaded strokes contradict.
 
-    Below the limits the readings count as uniform errors of either sign.
+    Readings below the limits count as errors of either sign, uniformly distributed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Text on the source of the zero of a segment, and on doubts."""
+"""Texts on the source of a segment's zero, and on doubts about it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.friction.zero.rests import LightRest, PartialContact
 def words_of(
     strokes: StrokeMeans, loops: Middles, pair: np.ndarray, allowance: np.ndarray, i: int
 ) -> str:
-    """Return a text on the source of the zero of a segment."""
+    """Return the source of the zero of a segment as text."""
     number = strokes.number
     drift = ", drift between the loops taken out" if np.any(loops.slope != 0) else ""
     if pair[i] >= 0:
@@ -82,7 +82,7 @@ def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[Doubt, ...]:
 
 
 def of_partial_contact(partial: PartialContact, load: float, segments: int) -> Doubt:
-    """Return the doubt about rests that read more than the unloaded one."""
+    """Return the doubt about rests in which the load cell reads more than in the unloaded rest."""
     share = partial.level / load
     text = (
         f"{many(partial.rests, 'rest')} from t = {partial.start:.4g} s on read {partial.level:.3g} "
@@ -123,7 +123,7 @@ def of_leak(leak: float, load: float, which: np.ndarray) -> Doubt:
 
 
 def of_light_rest(rest: LightRest, load: float, segments: int) -> Doubt:
-    """Return the doubt about a load whose zero a rest may show."""
+    """Return the doubt about a load whose zero may differ: one rest may be unloaded."""
     share = rest.level / load
     between = f"{rest.start:.4g} s to {rest.stop:.4g} s"
     text = (

@@ -143,7 +143,7 @@ def flag_clipping(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> n
 def pool_bands(
     logs: np.ndarray, weights: np.ndarray, fewest: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return spectral bands pooled to enough independent values each, and their numbers of values.
+    """Pool spectral bands until each has enough independent values; return them and the numbers.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 @dataclass(frozen=True)
 class PowerLaws:
-    """Two-sided C_1D as one power law per bin; it may jump between bins.
+    """Two-sided profile spectrum C_1D, as a power law in each bin; it may jump between bins.
 
     Parameters
     ----------
@@ -29,8 +29,8 @@ class PowerLaws:
         Derivative of `slope` by the logarithms of the bins' powers (bin, bin); without it the
         slopes are exact.
     tail
-        Weights of the bins' logarithms in the slope of the tail, ``sum(weights * ln power)`` plus
-        `tail_offset`; by default the slope of the last bin.
+        Weights from which the slope of the tail is computed: ``sum(weights * ln power)`` plus
+        `tail_offset`. By default the tail has the slope of the last bin.
     tail_offset
         See `tail`.
     """
@@ -193,7 +193,7 @@ def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
 def _tail(
     end: float, level: float, exponent: float, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the contribution of the extrapolated tail to M(q), and its slope over the exponent."""
+    """Return the share of the extrapolated tail in M(q), and its derivative by the exponent."""
 
     def mean_square(s: float) -> np.ndarray:
         # imported late: scipy loads slowly

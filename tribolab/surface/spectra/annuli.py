@@ -13,13 +13,13 @@ from tribolab.surface.spectra.abel import Annuli, PowerLaws
 from tribolab.surface.spectra.smooth_law import FittedLaw, smooth
 
 _CONFIDENCE = 0.95
-_LARGEST_ERROR = 0.25  # largest relative standard error of an annulus that is not merged further
+_LARGEST_ERROR = 0.25  # relative standard error below which an annulus is not merged further
 _TAIL_DECADES = 0.5
 _PLATEAU = 3.0  # ratio of edges above which the first annulus must be the result of a merge
 
 
 def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the 95 % band of a mean power: chi-square, two degrees of freedom per value.
+    """Return the 95 % band of a mean power: chi-square with two degrees of freedom per value.
 
     Below one independent value the quantiles approach zero. There the logarithm of the band widens
     with the standard error, starting at the band of one value.
@@ -49,8 +49,8 @@ def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaw
     Returns
     -------
     tuple of PowerLaws, PowerLaws and numpy.ndarray
-        The bins, whose tail is fitted over the last half decade; the same for the smooth spectrum,
-        see `smooth`; and the relative standard error of each bin.
+        The measured bins, with a tail fitted over the last half decade; bins of the smooth spectrum
+        (see `smooth`); and the relative standard error of each bin.
     """
     q, c = profile.wavenumber.values, profile.psd_1d.values
     power = profile.mean_square_height.values
@@ -123,7 +123,7 @@ def merge_annuli(
 
 
 def _merged_annuli(annuli: Annuli, ends: list[int]) -> Annuli:
-    """Return the annuli that remain if only the edges with the numbers `ends` are kept."""
+    """Return the annuli between those edges whose indices are in `ends`."""
     starts = ends[:-1]
     return Annuli(
         annuli.edges[ends],
@@ -187,7 +187,7 @@ def _balance_power(
     def excess(s: float) -> float:
         return _mean_square(edges, q, c * np.exp(s * error**2)) / whole - 1
 
-    most = 1.6 / float(error.max() ** 2)  # limits any change of C to a factor of five
+    most = 1.6 / float(error.max() ** 2)  # so that C changes by a factor of five at most
     if excess(-most) > 0 or excess(most) < 0:
         return c
     return c * np.exp(brentq(excess, -most, most, xtol=1e-12 * most, rtol=1e-12) * error**2)

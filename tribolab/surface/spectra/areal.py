@@ -24,11 +24,11 @@ from tribolab.surface.spectra.binning import correlation, log_bins, window
 from tribolab.units.stamping import stamp
 
 _MIN_POINTS_OF_SIDE = 16
-_BLOCK = 256  # map rows multiplied by the window at a time
+_BLOCK = 256  # number of map rows that are multiplied by the window at a time
 
 
 def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return one quadrant of the mean power of windowed maps (scan, y, x), and the mean square."""
+    """Return a quadrant of the mean power spectrum of windowed maps, and their mean square."""
     rows, columns = maps.shape[-2:]
     power, square = np.zeros((rows // 2 + 1, columns // 2 + 1)), 0.0
     lines = np.empty((rows, columns // 2 + 1), complex)
@@ -75,11 +75,11 @@ def psd_2d_of_map(
     Returns
     -------
     xarray.Dataset
-        As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to that
-        along x; neither it nor the mean shows the direction of a lay. Spectra of several maps are
-        averaged. If heights are missing, the band includes ``gap_error``, the relative standard
-        error due to the gaps. Wavenumbers above ``gaps_hide_above_1_m``, where gaps removed half of
-        the power, are left out.
+        As returned by `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y
+        to that along x; neither it nor the mean shows the direction of a lay. Spectra of several
+        maps are averaged. If heights are missing, the band includes ``gap_error``, the relative
+        standard error due to the gaps. Wavenumbers above ``gaps_hide_above_1_m``, where gaps
+        removed half of the power, are left out.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def psd_2d_of_map(
         )
     bins = log_bins(waves, 3, bins_per_decade, 1)
     edges = bins.edges * spacing
-    annulus = np.digitize(q.ravel(), edges)  # numbers 0 and last are outside all annuli
+    annulus = np.digitize(q.ravel(), edges)  # 0 and the last number are outside all annuli
 
     def sums(values: np.ndarray) -> np.ndarray:
         return np.bincount(annulus, (values * along_x).ravel(), bins.starts.size + 2)[1:-1]

@@ -14,7 +14,7 @@ class Bins:
     Parameters
     ----------
     starts
-        First line of each bin; the next bin's first line ends it (bin,).
+        First line of each bin, which extends to the first line of the next bin (bin,).
     stop
         The line after the last bin.
     """
@@ -69,7 +69,7 @@ def window(points: int, flanks: float = 1.0) -> np.ndarray:
     Parameters
     ----------
     points
-        Number of points; the window is zero one half step beyond the ends.
+        Number of points; the window is zero half a step beyond the ends.
     flanks
         Share of the length in the two flanks; 1 is the Hann window itself.
     """
@@ -100,7 +100,7 @@ def correlation(shift: float, flanks: float = 1.0) -> float:
 def shape(
     bins: Bins, slope: np.ndarray, spacing: float, flanks: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the bin mean of a power law relative to its node value, and the independent values.
+    """Return the bin mean of a power law over its node value, and the number of independent values.
 
     Parameters
     ----------
@@ -109,9 +109,9 @@ def shape(
     slope
         ``d ln C_1D / d ln k`` of the spectrum in each bin (bin,).
     spacing
-        Distance of two lines in units of the unpadded ones (1 without zero padding).
+        Distance of two lines, relative to that without zero padding.
     flanks
-        Flanks of the window.
+        Flanks of the window, see `window`.
 
     Returns
     -------

@@ -12,7 +12,7 @@ _CHUNK_BYTES = 1 << 21  # bytes per chunk: a chunk and its transform fit into th
 
 
 class Power(NamedTuple):
-    """Power of each bin, summed over the scans, and both sides of Parseval's equation."""
+    """Power in each bin, summed over the scans, and both sides of Parseval's relation."""
 
     bins: np.ndarray
     lines: float
@@ -22,8 +22,8 @@ class Power(NamedTuple):
 def fast_length(points: int) -> int:
     """Return the smallest multiple of 16, at least `points`, with no prime factor above 5.
 
-    Lengths that are merely smooth (50 625 = 15^4) take half as long again per point as those
-    with many factors of two.
+    Lengths with few factors of two (50 625 = 15^4) take half as long again per point as those
+    with many.
 
     >>> fast_length(50_001)
     51200
@@ -47,7 +47,7 @@ def binned_power(
     Parameters
     ----------
     height
-        Heights [m] (scan, x), with zero mean; anything that yields an array when sliced.
+        Heights [m] (scan, x), with zero mean; an array, or an object whose slices are arrays.
     window
         Window (x).
     bins

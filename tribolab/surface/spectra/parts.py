@@ -10,8 +10,9 @@ from tribolab.surface.gaps import GapEffect, gap_effect, logarithm
 from tribolab.surface.spectra.binning import Bins, window
 from tribolab.surface.spectra.fourier import binned_power
 
-_LONG_GAP = 1 / 32  # share of a profile; longer gaps split the profile, shorter ones are bridged
-_MIN_PART = 0.25  # share of the longest part; shorter parts do not resolve long waves
+_LONG_GAP = 1 / 32  # gaps longer than this share of a profile split it; shorter ones are bridged
+# parts below this share of the longest one are left out: they do not resolve long waves
+_MIN_PART = 0.25
 
 
 class Transform(NamedTuple):
@@ -57,15 +58,16 @@ def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) 
     height
         Bridged heights [m] (scan, x).
     missing
-        Where heights are missing, like the heights.
+        Mask of missing heights, in the shape of the heights.
     how
         Settings of the transform.
 
     Returns
     -------
     GapEffect
-        (bin,). For waves that are short compared with the parts between long gaps, the spectrum
-        of the parts replaces that of the bridged profiles; only short gaps count there.
+        Effect in each bin (bin,). For waves that are short compared with the parts between long
+        gaps, the spectrum of the parts replaces that of the bridged profiles; only short gaps count
+        there.
 
     Raises
     ------
@@ -118,7 +120,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
     height
         Bridged heights [m] (scan, x).
     missing
-        Where heights are missing, like the heights.
+        Mask of missing heights, in the shape of the heights.
     how
         Settings of the transform; form is removed from each part separately.
 
@@ -163,7 +165,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         power += np.sum(each, axis=0)
         squares = np.sum(tapers, axis=0) ** 2
         weight = lines / np.mean(squares**2)
-        # allowance for the logarithm of few values: it scatters more and has longer tails
+        # the logarithm of few values scatters more and has longer tails
         variance += np.mean((squares - whole**2) ** 2) / lines * (1.0 + 1.5 / weight)
         first = max(first, how.first(min(stop - start for start, stop in parts)))
         unlike = max(unlike, _excess_scatter(np.array(each), np.array(tapers), lines, first))
@@ -186,7 +188,7 @@ def _parts(gaps: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np.ndarray]:
-    """Return the window of each part (x); their sum has unit mean square over the profile."""
+    """Return the window of each part (x); the sum of all has unit mean square over the profile."""
     scale = np.sqrt(points / sum(stop - start for start, stop in parts))
     tapers = []
     for start, stop in parts:
@@ -207,7 +209,7 @@ def _remove_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarr
 
 
 def _excess_scatter(powers: np.ndarray, tapers: np.ndarray, lines: np.ndarray, first: int) -> float:
-    """Return the factor by which the spectra of parts scatter more than for Gaussian heights."""
+    """Return how many times more the spectra of parts scatter than those of Gaussian heights."""
     known = np.arange(lines.size) >= first
     if len(powers) < 2 or not known.any():
         return 1.0

@@ -1,4 +1,4 @@
-"""Power spectra of measured profiles, and of the isotropic surface with such profiles."""
+"""Power spectra of measured profiles, and of the isotropic surface from which they come."""
 
 from __future__ import annotations
 
@@ -232,7 +232,7 @@ def psd_2d(
 
 
 def _prepare_scans(scans: xr.Dataset, form: str) -> xr.Dataset:
-    """Return scans without form along one dimension ``scan``; an error if they are unsuitable."""
+    """Return scans without form along one dim ``scan``; raise an error if they are unsuitable."""
     if not isinstance(scans, xr.Dataset):
         raise AnalysisError(
             "one dataset with scans of equal pitch and length is wanted, got a "

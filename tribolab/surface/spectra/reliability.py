@@ -24,14 +24,14 @@ def tip_cutoff(
     Parameters
     ----------
     wavenumber, psd_1d, widths
-        Bins of the two-sided C_1D [1/m], [m3], [1/m].
+        Wavenumber [1/m], two-sided C_1D [m3] and width [1/m] of each bin.
     tip_radius
         Radius R of the tip [m].
 
     Returns
     -------
     float
-        Upper end of the last bin where ``R h''_rms(q) <= 0.15``; infinite if no bin passes it.
+        Upper edge of the last bin with ``R h''_rms(q) <= 0.15``; infinite if no bin passes it.
 
     Notes
     -----
@@ -93,7 +93,7 @@ def trusted_band(
     """
     q, c = spectrum.wavenumber.values, spectrum.psd_1d.values
     left, right = spectrum.wavenumber_low.values, spectrum.wavenumber_high.values
-    first = min(q.size - 1, 1 if lowest > 1 else 0)  # loss of power to form removal is not noise
+    first = min(q.size - 1, 1 if lowest > 1 else 0)  # the first bin lost power to form removal
     highs = {"Nyquist": float(right[-1]) / 2, "noise floor": noise_cutoff(q[first:], c[first:])}
     radius = scans.attrs.get("tip_radius_m") if tip_radius is None else tip_radius
     if radius is not None:

@@ -10,12 +10,12 @@ import numpy as np
 
 from tribolab.surface.self_affine import SelfAffine, psd_1d
 
-_STIFFNESS = 1e3  # stiffness of the smoothing, which averages over some ten bins
+_STIFFNESS = 1e3  # weight of smoothness against fit: averages over some ten bins
 _STARTS = (0.25, 0.5, 0.75)  # start values of the roll-off, as shares of the logarithmic range
 
 
 class FittedLaw(NamedTuple):
-    """Fitted plateau and power law, with the covariance of ln(roll-off) and Hurst exponent."""
+    """Fitted plateau and power law, with the covariance of ln(roll-off) and the Hurst exponent."""
 
     law: SelfAffine
     covariance: np.ndarray
@@ -78,7 +78,7 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
     ]
     best = min(tried, key=lambda fit: fit.cost)
     plateau = float(np.exp(np.average(misfit(best.x), weights=weights)))
-    # factor above 1 if the surface does not follow the fitted law
+    # larger errors if the surface does not follow the fitted law
     growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))
     rolloff, hurst = best.x
     jacobian = np.asarray(best.jac)
@@ -102,9 +102,9 @@ def smooth(
 
     Notes
     -----
-    The spectrum of the law times the surface's deviation from it, smoothed over some ten bins by
-    Whittaker's smoother [1]_. C_1D of an isotropic surface does not increase with k, and neither
-    does the result.
+    The result is the spectrum of the law times the measured deviation from it, smoothed over some
+    ten bins by Whittaker's smoother [1]_. C_1D of an isotropic surface does not increase with k,
+    and neither does the result.
 
     References
     ----------

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 _MIN_MEASURED = 0.5  # share of a sampling length that must have been measured
-_POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}  # moment's order, factor of its variance (Gaussian)
+# order of the moment, and factor of its variance for Gaussian heights
+_POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}
 
 
 class Tails(NamedTuple):
@@ -27,7 +28,7 @@ def long_holes(missing: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     missing
-        Truth (row, length, x).
+        Mask of missing heights (row, length, x).
 
     Examples
     --------
@@ -47,7 +48,7 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
     deviation
         Deviation from the mean line [m] (row, length, x).
     missing
-        Truth, like the deviation.
+        Mask of missing heights (row, length, x).
 
     Returns
     -------
@@ -56,8 +57,8 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
 
     Notes
     -----
-    The mean of a part that is measured differs from that of the whole by the variance of the
-    moment over windows, ``s**2 (1/n - 1/N)``, with n of N lengths measured. s is the larger of the
+    The mean of a moment over n of N sampling lengths differs from that over all by the variance
+    ``s**2 (1/n - 1/N)``. s is the larger of the
     scatter between the lengths and that of a normal process,
     ``6 sum(rho**3)/L`` and ``24 sum(rho**4)/L`` with its autocorrelation rho over a length of L
     points [1]_. The magnitude of rho is used, since part of a profile determines its negative lobes

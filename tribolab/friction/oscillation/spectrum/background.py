@@ -11,7 +11,7 @@ _CORNER_FREQUENCIES = 24  # number of trial corner frequencies
 # power of the white noise over that of the red noise at zero frequency
 _WHITE_SHARES = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 25)])
 _LEVEL_SHIFTS = np.linspace(-1.2, 1.2, 17)  # trial shifts of the level (natural log)
-_COST_MARGIN = 1e-3  # of the cost, far above the rounding of single precision
+_COST_MARGIN = 1e-3  # tolerance of the cost, far above the rounding errors of single precision
 
 
 def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> np.ndarray:
@@ -20,7 +20,7 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
     Parameters
     ----------
     frequency, power, freedom
-        Bands [Hz], power density, degrees of freedom (band).
+        Frequency [Hz], power density and degrees of freedom of bands (band).
 
     Returns
     -------
@@ -66,7 +66,7 @@ def _best_model(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
 def _cost(
     rest: np.ndarray, shift: np.ndarray | np.float32, weight: np.ndarray, off: np.ndarray
 ) -> np.ndarray:
-    """Return the weighted cost of each model, excesses clipped (model); overwrites `off`."""
+    """Return the weighted misfit of each model, with clipped excesses (model); overwrites `off`."""
     np.subtract(rest, shift, out=off)
     np.minimum(off, limits.MAX_EXCESS_OF_BAND.value, out=off)
     cost: np.ndarray = np.abs(off, out=off) @ weight
@@ -83,7 +83,7 @@ def _quantile(values: np.ndarray, share: float) -> np.ndarray:
 
 
 def false_alarm(power: np.ndarray, background: np.ndarray, freedom: np.ndarray) -> np.ndarray:
-    """Return the probability that noise shows such a band anywhere among all bands.
+    """Return the probability that noise makes any of the bands as strong as each one (band).
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ def segment_lines(
     Parameters
     ----------
     time, values
-        [s] and any unit (time).
+        Times [s], and the signal in any unit (time).
     segment, speed
         Number and sliding speed [m/s], for the record.
     """
@@ -69,15 +69,15 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     Parameters
     ----------
     time
-        [s] (time), evenly spaced except for jitter.
+        Times [s], evenly spaced except for jitter (time).
     values
-        (time), without missing values.
+        The signal, without missing values (time).
     """
     n = min(values.size, LONGEST_TRANSFORM)
     interval = (time[n - 1] - time[0]) / (n - 1)
     place = np.arange(n) / (n - 1) - 0.5
     part = values[:n] - values[:n].mean()
-    part -= 12 * place * (place @ part) / n  # a drift is not a line
+    part -= 12 * place * (place @ part) / n  # remove the trend, which is no line
     window = _hann(n)
     amplitude = 2 * np.abs(np.fft.rfft(part * window)) / window.sum()
     return np.fft.rfftfreq(n, interval), amplitude
@@ -89,7 +89,7 @@ def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> lis
     Parameters
     ----------
     time, values
-        An evenly sampled interval: [s] and any unit (time).
+        Times [s], evenly spaced, and the signal in any unit (time).
     lowest
         Only lines above this frequency [Hz].
 
@@ -131,18 +131,18 @@ def mains_harmonic(frequency: float, resolution: float, sampling_rate: float) ->
     Parameters
     ----------
     frequency
-        [Hz]
+        Frequency [Hz].
     resolution
         Width of a line in the spectrum [Hz].
     sampling_rate
-        [Hz]; harmonics above half of it fold back.
+        Sampling rate [Hz]; harmonics above half of it fold back.
 
     Examples
     --------
     >>> mains_harmonic(50.02, 0.1, 2000.0), mains_harmonic(47.0, 0.1, 2000.0)
     ('50 Hz', '')
     """
-    tolerance = 0.15 + resolution  # Hz; grids stay within 0.15 Hz of their frequency
+    tolerance = 0.15 + resolution  # Hz; power grids keep within 0.15 Hz of their frequency
     for base in (50.0, 60.0):
         for harmonic in (1, 2, 3):
             true = base * harmonic

@@ -11,7 +11,7 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.lines import LONGEST_TRANSFORM, amplitude_spectrum
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
-_PEAK_SHIFT_BINS = 0.25  # shift of a peak due to noise
+_PEAK_SHIFT_BINS = 0.25  # largest shift of a peak due to noise, in bins
 _FUNDAMENTAL = {f"{base * k:g} Hz": base for base in (50.0, 60.0) for k in (1, 2, 3)}
 
 
@@ -67,12 +67,12 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
             continue  # in a short record a bin is wide: 57 Hz is not mains
         if size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < limits.MAINS_BY_CHANCE.value:
             harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
-    # among hundreds of segments noise may resemble a harmonic: require its fundamental
+    # noise may resemble a harmonic in one of many segments: require the fundamental, too
     names = {line.name for line in harmonics}
     return tuple(line for line in harmonics if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)
 
 
 def _bins(frequency: np.ndarray, middle: float, reach: float) -> slice:
-    """Return the bins whose frequency is within a distance of another."""
+    """Return the bins within a distance of a frequency [Hz]."""
     low, high = np.searchsorted(frequency, middle - reach), middle + reach
     return slice(int(low), int(np.searchsorted(frequency, high, side="right")))

@@ -35,8 +35,8 @@ def noise_level(values: np.ndarray) -> float:
 
     Notes
     -----
-    Median absolute second difference, which drift and slow waves hardly change, over 0.6745
-    sqrt(6).
+    It is the median absolute second difference, which drift and slow waves hardly change, divided
+    by 0.6745 sqrt(6).
     """
     values = _known(values)
     if values.size < 5:

@@ -13,7 +13,8 @@ from tribolab.friction.oscillation import limits
 # most samples of a single transform of the record; longer records are averaged
 _WHOLE_TRANSFORM = 1 << 16
 _MIN_WINDOW = 1 << 13  # fewest samples of the intervals whose spectra are averaged
-_MAX_WINDOWS = 384  # most intervals that are averaged, evenly spread: accurate to 5 %
+# most intervals that are averaged, evenly spaced: the spectrum is accurate to 5 %
+_MAX_WINDOWS = 384
 _BATCH_SAMPLES = 1 << 18  # samples processed at a time: they fit into the cache
 _HANN_WIDTH = 1.5  # bins that a line covers
 
@@ -56,7 +57,7 @@ def make_record(time: np.ndarray, values: np.ndarray) -> EvenRecord:
     some = max(1, n // _BATCH_SAMPLES)
     off = time[::some] - (time[0] + spacing * np.arange(0, n, some))
     even = bool(np.sqrt(np.mean(off * off)) < limits.MAX_UNEVEN_SPACING.value * spacing)
-    if not even:  # a clock that runs slightly fast is even, too: compare the steps
+    if not even:  # if the clock runs slightly fast, sampling is even, too: compare the steps
         largest = max(
             float(np.abs(np.diff(time[i : i + _BATCH_SAMPLES + 1]) - spacing).max())
             for i in range(0, n - 1, _BATCH_SAMPLES)
@@ -152,7 +153,7 @@ def _transform(record: EvenRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
 
 
 def line_through(place: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the least-squares straight line at the given places."""
+    """Return the values of the least-squares straight line at given positions."""
     x = place - place.mean()
     mean = values.mean()
     return mean + x * ((x @ (values - mean)) / max(float(x @ x), 1e-300))

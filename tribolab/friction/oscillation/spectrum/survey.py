@@ -26,7 +26,7 @@ class Survey(NamedTuple):
     background
         Power density of red and white noise (band).
     chance, rise
-        Probability that noise reaches this power, and that it exceeds the slower bands so far.
+        Probability that noise reaches the power of a band, and that it exceeds slower bands as far.
     duration
         Duration of the record [s].
     mains
@@ -69,7 +69,7 @@ class Survey(NamedTuple):
         )
 
     def without(self, part: np.ndarray) -> Survey:
-        """Return the survey with some bins replaced by the background (bin)."""
+        """Return the survey with masked bins replaced by the background (bin)."""
         level = np.interp(self.fine.frequency, self.middle, self.background)
         fine = self.fine._replace(power=np.where(part, level, self.fine.power))
         return _survey(fine, self.duration, self.mains, self.background)
@@ -109,7 +109,7 @@ def _survey(
 def above_lower(
     fine: Spectrum, middle: np.ndarray, power: np.ndarray, freedom: np.ndarray
 ) -> np.ndarray:
-    """Return the probability that a non-rising spectrum shows so high a band by chance (band).
+    """Return the probability that chance lifts a band so far above slower ones (band).
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def above_lower(
 
 
 def _remove_mains(spectrum: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
-    """Replace mains lines by the median of their surroundings."""
+    """Return the spectrum with mains lines replaced by the median of their surroundings."""
     power = spectrum.power.copy()
     for line in mains:
         at = int(np.argmin(np.abs(spectrum.frequency - line.frequency)))

@@ -62,7 +62,7 @@ def lomb_scargle(
     Parameters
     ----------
     time, values, weights
-        [s], any unit, and the weight of each sample: its share of time times a window.
+        Times [s], signal in any unit, and weights: share of the time of a sample times a window.
     step, count
         Frequencies ``0, step ... (count-1) step`` [Hz].
 
