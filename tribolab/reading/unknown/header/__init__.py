@@ -1,1 +1,1 @@
-"""What the text above a table states."""
+"""Settings that the text above a table states."""

@@ -1,4 +1,4 @@
-"""Levers, gains, contacts and calibrations that the text above a table states."""
+"""Lever ratios, gains, numbers of contacts and calibrations stated above a table."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ _UNIT_OF_NAME = re.compile(r"[\[(](\w{1,12}/\w{1,12})[\])]")
 
 
 def unapplied_factors(layout: Layout) -> list[str]:
-    """List the factors by which signals may still have to be multiplied: levers, gains, contacts.
+    """Return sentences on stated factors that the signals may not include yet: levers, gains.
 
-    Each line that states one has a sentence. Factors of one and single contacts are left out.
+    There is one sentence per line of text. Factors of one and single contacts are left out.
     """
     lines = layout.sentences()
     if any(key_pattern("per_contact").search(label_of(line)) for line in lines):
-        lines = [line for line in lines if not contacts_in(line)]  # the load is times their number
+        lines = [line for line in lines if not contacts_in(line)]  # `find_load` multiplies
     return [sentence for line in lines if (sentence := _unapplied(line))]
 
 
@@ -61,7 +61,7 @@ def contacts_in(line: str) -> int:
 def unapplied_height_factors(
     layout: Layout, heights: np.ndarray, columns: Sequence[DraftColumn]
 ) -> list[str]:
-    """List the factors by which heights may still have to be multiplied, or what one step is."""
+    """Return sentences on stated factors or step sizes that the heights may not include yet."""
     scaled = any(column.used and column.counted and column.unit for column in columns)
     present = heights[np.isfinite(heights)]
     whole = bool(present.size) and bool((present == np.round(present)).all())
@@ -85,7 +85,7 @@ def _states_one(text: str) -> bool:
 
 
 def _unapplied(line: str) -> str:
-    """Return a stated factor that the signals may not include yet; "" if there is none.
+    """Return a sentence on a factor in a line that the signals may not include yet, or "".
 
     >>> _unapplied("Multiply friction force by 1.25")
     "signals are read as they stand, and not as the file says: 'Multiply friction force by 1.25'"
@@ -103,7 +103,7 @@ def _unapplied(line: str) -> str:
         key = line[: ratio.start()]
         named = mentions("factor", key) or mentions("transmission", key)
         if named and any(key_pattern("load").search(s.key) for s in phrases(line[ratio.end() :])):
-            return ""  # what the lever makes of a weight is said behind it
+            return ""  # the load that the lever gives is stated as well
         if named and decimal(ratio[1]) != decimal(ratio[2]):
             return as_they_stand
     if mentions("lever", line) and any(not number.unit and number.value != 1 for number in numbers):
@@ -124,7 +124,7 @@ def _unapplied(line: str) -> str:
 
 
 def _counts_contacts(line: str, number: Number) -> bool:
-    """Whether a number is that of several contacts: "2 pins", "Number of contacts: 2"."""
+    """Whether a number in a line counts contacts: "2 pins", "Number of contacts: 2"."""
     if not number.text.isdigit() or not 1 < number.value <= _MAX_CONTACTS:
         return False
     bodies = text_pattern("bodies_in_contact")
@@ -136,7 +136,7 @@ def _counts_contacts(line: str, number: Number) -> bool:
 
 
 def _multiplies(line: str, number: Number) -> bool:
-    """Whether a line states a number to multiply or divide by."""
+    """Whether signals have to be multiplied or divided by a number in a line."""
     before = line[: number.start].rstrip().rpartition(" ")
     if before[2] in ("x", "X", "×", "*"):  # "Friction force x 1.25", not "512 x 512"
         return mentions("signal", before[0]) and not any(map(str.isdigit, before[0]))
@@ -147,9 +147,9 @@ def _multiplies(line: str, number: Number) -> bool:
 
 
 def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
-    """Quote the lines with a calibration of volts or counts, or its zero; "" without any.
+    """Return the lines that state a calibration of volts or counts, or its zero, in quotes.
 
-    With `bare`, heights are meant, which may have no header.
+    The text is "" if there are none. With `bare`, a header is not required, as for heights.
     """
     lines = layout.sentences(bare=bare)
     found = [line for line in lines if states_calibration(line) or states_raw_zero(line)]
@@ -157,7 +157,7 @@ def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
 
 
 def states_calibration(line: str) -> bool:
-    """Whether a line states the calibration of a volt or a count.
+    """Whether a line states a calibration factor for volts or counts.
 
     >>> stated = ("Encoder: 500 counts/mm", "1 N = 4213 counts", "Gain [N/mV]: 2.3", "2 mV/V")
     >>> [states_calibration(line) for line in (*stated, "Speed: 2 mm/s", "Supply: 5 V")]

@@ -1,4 +1,4 @@
-"""What the text of a file states of a profile: pitch, length, units, tip."""
+"""Pitch, length, units and stylus tip of a profile, as stated in the text of its file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribolab.reading.unknown.header.settings import numeric_settings, text_sett
 from tribolab.reading.unknown.layout.text_layout import Layout
 
 _TIP_RADII = (1e-9, 1e-3)  # m, the smallest and the largest
-# units of heights with any name
+# units that mean heights whatever the setting is called
 _USUAL = frozenset({"nm", "um", "µm", "\u03bcm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
 _HEIGHTS_IN = re.compile(
     rf"(?<![^\W\d_]){alternatives('heights_in')}\s+{alternatives('in')}\s+"
@@ -22,7 +22,7 @@ _HEIGHTS_IN = re.compile(
 
 
 def find_pitch(layout: Layout) -> Amount | None:
-    """Return the pitch of a profile that the text before the heights states, or None."""
+    """Return the pitch of a profile as stated above the heights, or None."""
     found = _above(layout).of("pitch", unit="m")
     axes = {value.key[-1] for value in found}
     if not found or (layout.width == 1 and {"x", "y"} <= axes):  # heights of a map in one column
@@ -31,9 +31,9 @@ def find_pitch(layout: Layout) -> Amount | None:
 
 
 def find_profile_length(layout: Layout) -> Amount | None:
-    """Return the length of a whole profile that the text before the heights states, or None.
+    """Return the length of a whole profile as stated above the heights, or None.
 
-    It is no guess if the text also says how many points the profile has, and as many follow.
+    The length is certain if the text also states the number of points, and as many follow.
     """
     length = _above(layout).only("profile_length", unit="m")
     if length is None:
@@ -46,10 +46,10 @@ def find_profile_length(layout: Layout) -> Amount | None:
 
 
 def find_stated(layout: Layout, *, placed: bool) -> list[Amount]:
-    """Return what the text before a profile states of it, each under the name that checks know.
+    """Return stated properties of a profile under the names that the checks of scans use.
 
-    These are ``tip_radius``, ``stated_length``, ``stated_pitch`` and ``stated_points``, if they are
-    stated just once.
+    These are ``tip_radius``, ``stated_length``, ``stated_pitch`` and ``stated_points``; any that
+    is stated more than once is left out.
     """
     values = _above(layout)
     whole = values.of("profile_length", unit="m", but=("part_of_trace",)).of("length_of_trace")
@@ -72,9 +72,9 @@ def find_stated(layout: Layout, *, placed: bool) -> list[Amount]:
 
 
 def find_height_unit(layout: Layout) -> str:
-    """Return the unit of heights that the text before them states in a line of its own, or "".
+    """Return the unit of heights that a separate line above the table states, or "".
 
-    One unit for a whole table ("Units: mm") is theirs, too, if no other is stated.
+    A unit for the whole table ("Units: mm") is used if no other is stated.
     """
     said = _length_units(layout)
     own = {unit for key, unit in said if _means("height_unit")(key) or _names_heights(key)}
@@ -90,7 +90,7 @@ def find_height_unit(layout: Layout) -> str:
 
 
 def find_unit_along(layout: Layout) -> str:
-    """Return the unit of positions that the text before them states in a line of its own, or ""."""
+    """Return the unit of positions that a separate line above the table states, or ""."""
     units = {unit for key, unit in _length_units(layout) if _means("along")(key)}
     if len(units) > 1:
         return ""
@@ -112,7 +112,7 @@ def _length_units(layout: Layout) -> list[tuple[str, str]]:
 
 
 def _unit_of_all(layout: Layout) -> str:
-    """Return the unit of all lengths of a table of several columns: "Units: mm"; "" if none is."""
+    """Return the only unit stated above a table of several columns: "Units: mm"; else ""."""
     said = _length_units(layout)
     stated = [unit for key, unit in said if _means("unit")(key)]
     one = len(stated) == len({unit for _, unit in said}) == 1
@@ -120,7 +120,7 @@ def _unit_of_all(layout: Layout) -> str:
 
 
 def _names_heights(key: str) -> bool:
-    """Whether what a line calls so is the height, and not a size across the surface."""
+    """Whether a normalised key means the height, and not a lateral size."""
     if _means("not_height")(key):
         return False
     options = matches(key, None, scan=True)

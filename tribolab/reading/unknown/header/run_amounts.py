@@ -1,4 +1,4 @@
-"""Amounts that a file states of a run: track, ring, arm, load, slide-roll ratio, rotation."""
+"""Stated amounts of a run: track radius, ring, lever arm, load, slide-roll ratio, rotation."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
 
 
 def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:
-    """Return the radius of the track, if just one of a file's amounts is one, or its diameter.
+    """Return the track radius, if exactly one amount of a file is the radius or the diameter.
 
-    It has a `guess` if it is only a radius "R", or the size of what turns. If the track is the
-    `rim` of what turns, that size is its radius.
+    The radius has a `guess` if the text only states a radius "R", or the size of the rotating
+    body. With `rim`, the track is the rim of the rotating body.
     """
     lengths = _lengths(values).of(but=("other_radius",))
     across = _scaled(lengths.of("diameter"), "track_radius", 0.5)
@@ -36,7 +36,7 @@ def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None
     sure = (
         radii.of("on_track")
         or radii.of(but=("turning",))
-        or radii.of("of_mean")  # of a ring, the radius at which it rubs
+        or radii.of("of_mean")  # the mean radius of a ring
         or across.of("track_diameter")
     )
     if sure:
@@ -54,7 +54,7 @@ def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None
 
 
 def find_ring(values: Sequence[Amount]) -> tuple[Amount, Amount] | None:
-    """Return the inner and outer radius of a ring that slides on its face, or their diameters."""
+    """Return the inner and outer radius of a ring that slides on its face, or None."""
     for concept, scale in (("track_radius", 1.0), ("diameter", 0.5)):
         sizes = _lengths(values).of(concept)
         inner, outer = sizes.only("inner_side"), sizes.only("outer_side")
@@ -68,17 +68,17 @@ def find_ring(values: Sequence[Amount]) -> tuple[Amount, Amount] | None:
 
 
 def find_arm(values: Sequence[Amount]) -> Amount | None:
-    """Return the arm of a torque, if just one of a file's amounts is one."""
+    """Return the lever arm of the torque, if exactly one amount of a file is a lever arm."""
     return _lengths(values).only("arm")
 
 
 def is_at_arm(column: DraftColumn) -> bool:
-    """Whether a column's name is a force on an arm, which gives a torque."""
+    """Whether a column's name means a force at the end of a lever arm."""
     return bool(key_pattern("force_at_arm").search(normalise_label(split_name(column.label)[0])))
 
 
 def confirm_lever_arm_force(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Let a force that is named as one on an arm be no guess if the text states the arm."""
+    """Return the columns; a force on a lever arm is certain if the text states the arm."""
     held = [c for c in columns if c.used and c.quantity == "friction_force" and is_at_arm(c)]
     if len(held) != 1 or find_arm(numeric_settings(layout)) is None:
         return list(columns)
@@ -94,9 +94,9 @@ def _scaled(values: Amounts, name: str, scale: float) -> Amounts:
 
 
 def find_load(values: Sequence[Amount]) -> Amount | None:
-    """Return the load that the text before the table states, as a force; None if none, or several.
+    """Return the load stated above the table, as a force; None if there are several or none.
 
-    If the text states no load, that of the file's name counts. Zero is not a load.
+    If the text states no load, the load in the file name is used. Zero is not a load.
     """
     contacts = next(filter(None, (contacts_in(v.text) for v in values if not v.own_unit)), 1)
     fitting = Amounts(
@@ -107,7 +107,7 @@ def find_load(values: Sequence[Amount]) -> Amount | None:
             scale=value.scale * (contacts if value.means("per_contact") else 1),
         )
         for value in Amounts(values).of("load", unit="N")
-        # "step 0: no contact (load 0 N)": nothing that friction is divided by
+        # "step 0: no contact (load 0 N)" is no load to divide the friction by
         if value.source != "file name" and (value.source == "step" or value.value != 0)
     )
     if not fitting:
@@ -121,7 +121,7 @@ def _force_unit(value: Amount) -> str:
 
 
 def find_slide_roll_ratio(values: Sequence[Amount]) -> Amount | None:
-    """Return the slide-to-roll ratio that a file states as a number or in per cent, or None."""
+    """Return the slide-roll ratio that a file states as a number or in per cent, or None."""
     fitting = [v for v in values if not v.own_unit or v.is_in("1")]
     ratio = Amounts(fitting).only("slide_roll_ratio")
     if ratio is None:
@@ -130,9 +130,9 @@ def find_slide_roll_ratio(values: Sequence[Amount]) -> Amount | None:
 
 
 def as_entrainment_speed(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Take a speed next to a slide-to-roll ratio for the mean one of both surfaces.
+    """Return the columns; the speed is the entrainment speed if there is a slide-roll ratio.
 
-    A speed that no word calls the mean one is a guess.
+    This is a guess unless its name says that it is a mean speed.
     """
     speeds = [c for c in columns if c.used and c.quantity == "sliding_velocity"]
     in_column = any(c.used and c.quantity == "slide_roll_ratio" for c in columns)
@@ -152,7 +152,7 @@ def as_entrainment_speed(layout: Layout, columns: Sequence[DraftColumn]) -> list
 
 
 def stated_rotation(values: Sequence[Amount]) -> Amount | None:
-    """Return the one rotation speed that the text states, as a value of the dialect."""
+    """Return the only rotation speed that the text states, as a value of the dialect."""
     turns = [value for value in values if _is_rotation(value)]
     return turns[0]._replace(unit="rpm", to="rad/s", name="rotation") if len(turns) == 1 else None
 

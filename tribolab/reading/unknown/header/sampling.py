@@ -1,4 +1,4 @@
-"""The sample rate, or the interval of samples, that the text before a table states."""
+"""Sampling rate or sampling interval, as stated in the text above a table."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tribolab.reading.unknown.layout.lvm import interval_above
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_MOST = 200  # amounts above the table that are looked at
+_MOST = 200  # amounts above the table that are inspected
 _THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:,\d{3})+")
 _LABEL = re.compile(r"\W*(?P<name>[^\W\d][^:=\t;\[(]*)(?:[\[(](?P<unit>[^\[\]()]+)[\])])?")
 _SAMPLE, _PER = alternatives("sample"), alternatives("per")
@@ -37,14 +37,15 @@ _EVERY = re.compile(  # "every 10th sample"
     re.IGNORECASE,
 )
 _PER_SAMPLE = re.compile(rf"(?P<time>[mµun]?s|sec|min)\s*{_PER}\s*{_SAMPLE}\.?")
-_RATE_UNITS = {"": "Hz", "k": "kHz", "m": "MHz"}  # nobody takes a sample in a thousand seconds
+_RATE_UNITS = {"": "Hz", "k": "kHz", "m": "MHz"}  # m is mega: nobody samples at mHz
 
 
 class Sampling(NamedTuple):
-    """Sampling as stated above the table, and the parts of it that are guessed.
+    """Sampling rate or interval as stated above the table, and a guess about it.
 
-    `pattern` finds the number; `unit` is one of frequency, or of time if it is an interval, and
-    may be taken for what a rate is usually in (`has_unit` False).
+    `pattern` finds the number in the text. `unit` is a unit of frequency for a rate, of time for
+    an interval, and of speed for a position. Without `has_unit` the text states none, and the
+    usual unit is assumed.
     """
 
     pattern: str
@@ -54,13 +55,13 @@ class Sampling(NamedTuple):
 
 
 def find_sampling(layout: Layout) -> Sampling | None:
-    """Return the stated sample rate, or interval of samples; None if there is none."""
+    """Return the stated sampling rate or interval; None if there is none."""
     if (above := interval_above(layout)) is not None:
         return Sampling(*above)
     amounts = amounts_of(layout.text_above(bare=layout.width == 1), _MOST)
     stated = [found for value in amounts if (found := _stated(value, layout.decimal))]
     said = next((found for found in stated if found.has_unit), None)
-    said = said or next(iter(stated), None) or _taken_so_often(amounts)
+    said = said or next(iter(stated), None) or _rate_by_first_word(amounts)
     if said is None or not (fewer := _fewer_rows(layout)):
         return said
     doubt = f"every sample is taken for a row, although the file states '{fewer}'"
@@ -70,9 +71,9 @@ def find_sampling(layout: Layout) -> Sampling | None:
 def find_pace(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> Sampling | None:
-    """Return the speed of a position that gives the time, such as a crosshead's.
+    """Return the stated constant speed, e.g. of a crosshead, that gives time from a position.
 
-    It is None unless the text states one speed, and the position does nothing but go on.
+    None unless the text states one speed, and the position is strictly monotonic.
     """
     names = {column.quantity for column in columns if column.used}
     way = next((c for c in columns if c.used and c.quantity == "position"), None)
@@ -88,7 +89,7 @@ def find_pace(
 
 
 def sample_rate_unit(text: str) -> str:
-    """Return the unit of frequency that a text of samples per time means; "" if it means none.
+    """Return the unit of frequency of a text such as "samples/s"; "" for any other text.
 
     Examples
     --------
@@ -105,7 +106,7 @@ def sample_rate_unit(text: str) -> str:
 
 
 def _fewer_rows(layout: Layout) -> str:
-    """Return the line on averaged or omitted samples; "" if there is none."""
+    """Return the line that states averaged or omitted samples; "" if there is none."""
     for line in layout.sentences():
         said = single_number(line)
         averaged = said and key_pattern("averaging").search(normalise_label(said[0]))
@@ -115,7 +116,7 @@ def _fewer_rows(layout: Layout) -> str:
 
 
 def _stated(value: Amount, decimal: str) -> Sampling | None:
-    """Return what an amount states of the samples."""
+    """Return the sampling rate or interval that an amount states; None if it states neither."""
     label = _LABEL.match(value.text)
     unit = (value.own_unit or (label["unit"] if label else "") or "").rstrip(".")
     by_key = sample_rate_unit(label["name"]) if label else ""
@@ -138,8 +139,8 @@ def _stated(value: Amount, decimal: str) -> Sampling | None:
     return None if unit else Sampling(value.pattern, si_unit, guess, has_unit=False)
 
 
-def _taken_so_often(amounts: Amounts) -> Sampling | None:
-    """Return the one frequency that begins as that of samples does.
+def _rate_by_first_word(amounts: Amounts) -> Sampling | None:
+    """Return the only frequency whose name begins with "sampling" or the like, even if misspelt.
 
     File: "Sampling fequency [Hz]" (liampond/EgbertsTribometer).
     """

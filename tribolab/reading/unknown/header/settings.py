@@ -1,4 +1,4 @@
-"""What a file states besides its table, as amounts and texts: in its lines, and in its name."""
+"""Settings that the text or the name of a file states, as numbers with units or as words."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from tribolab.reading.interpret.amounts import Amount, Amounts, amounts_of_name,
 from tribolab.reading.interpret.settings import add_unique, amounts_of, texts_of
 from tribolab.reading.unknown.layout.text_layout import Layout
 
-_MAX_REPEATED = 12  # a long preamble is not repeated in the dialect
-_MAX_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
+_MAX_REPEATED = 12  # settings of a run; more would make a long dialect
+_MAX_OF_SCAN = 200  # settings of a profilometer; the few that are needed may come last
 
 
 def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
-    """Return the amounts that a file and its name state, a dozen at most.
+    """Return the amounts that the text and the name of a file state, a dozen at most.
 
-    With `bare` heights are meant: more amounts, and a table may have no header.
+    With `bare`, for a table of heights, more are returned, and a header is not required.
     """
     found = {amount.name: amount for amount in amounts_of_name(layout.file.path.name)}
     above = _text_above(layout, bare=bare)
@@ -27,12 +27,12 @@ def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
 
 
 def text_settings(layout: Layout, *, bare: bool = False) -> tuple[tuple[str, str], ...]:
-    """Return settings in words above the table: "Drive: crank" as ("Drive", "crank")."""
+    """Return the settings in words above the table: "Drive: crank" as ("Drive", "crank")."""
     return texts_of(_text_above(layout, bare=bare))
 
 
 def lines_without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
-    """Return the lines that state a length, a load or how often strokes come, but no unit of it."""
+    """Return the lines that state a length, a load or a stroke frequency without a unit."""
     of_run = ("track_radius", "track_diameter", "arm", "stroke", "frequency", "load")
     wanted = ("pitch", "profile_length") if bare else of_run
     return [amount.text for amount in numeric_settings(layout, bare=bare).of(*wanted, unit="")]
@@ -43,7 +43,7 @@ def _text_above(layout: Layout, *, bare: bool) -> tuple[str, ...]:
 
 
 def _of_steps(amount: Amount, layout: Layout) -> Amount:
-    """Return an amount as one of each step, if the text before later tables states another."""
+    """Return an amount with source "step" if the text before later tables states other values."""
     if not layout.repeats or amount.source != "preamble":
         return amount
     edges = [0, *(edge for block in layout.blocks for edge in (block.start, block.stop))]

@@ -1,4 +1,4 @@
-"""Length and frequency of strokes: where a file states them, above the table or in columns."""
+"""Length and frequency of strokes, from the text above the table or from columns."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from tribolab.reading.text.cells import split_name
 from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.model import DraftColumn, Understood
 
-_CHANGED = 1.1  # times the lowest: a setting is no longer the same
+_CHANGED = 1.1  # largest ratio of highest to lowest value of a constant setting
 _LIST = re.compile(rf"\d\s?(?:[/;|]|\b{alternatives('then')}\b)\s?\d", re.IGNORECASE)
-_EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
+_EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # "±5 mm": amplitude from the middle
 
 
 class Strokes(NamedTuple):
-    """Length and frequency of strokes: their entry in [speed], their location, and a guess."""
+    """Length and frequency of strokes: their settings in [speed], their sources, and a guess."""
 
     settings: tuple[tuple[str, str], ...]
     values: tuple[Amount, ...] = ()
@@ -32,9 +32,9 @@ class Strokes(NamedTuple):
 
 
 def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | None:
-    """Return length and frequency of strokes, of the text above the table and of columns.
+    """Return length and frequency of strokes from the text above the table and from columns.
 
-    A column takes precedence over the text: it shows when the setting changes.
+    If the text states both and no column shows that they change, the text is used.
     """
     lengths, frequencies = _of_columns(understood)
     stroke, frequency, guess = _stated(values)
@@ -52,7 +52,7 @@ def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | 
 def _strokes(
     length: Amount | DraftColumn | None, often: Amount | DraftColumn | None, guess: str = ""
 ) -> Strokes | None:
-    """Return strokes by a stated or recorded length and frequency; None if one is unknown."""
+    """Return strokes from a stated or recorded length and frequency; None if either is missing."""
     if length is None or often is None:
         return None
     given = {"stroke": length, "stroke_frequency": often}
@@ -66,7 +66,7 @@ def _strokes(
 
 
 def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Strokes | None:
-    """Return the strokes that a person stated, completed by the text."""
+    """Return the strokes that the user stated, completed by the text above the table."""
     stated = _stated(values)[:2]
     settings, kept = [], []
     for name, text, value in zip(("stroke", "frequency"), said, stated, strict=True):
@@ -84,13 +84,13 @@ def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
 
 
 def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | None:
-    """Return strokes of a stated length, one pair per turn of a crank."""
+    """Return strokes of the stated length, at the rotation speed of a crank."""
     stroke, _, guess = _stated(values)
     return _strokes(stroke, often, guess)
 
 
 def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
-    """Return the stated strokes, for comparison with a recorded position."""
+    """Return stated length, frequency and number of strokes, for comparison with a position."""
     strokes = find_strokes_above(values)
     if strokes is None or strokes.guess:
         return ()
@@ -106,13 +106,13 @@ def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
 
 
 def find_stroke_length(values: Sequence[Amount]) -> Amount | None:
-    """Return the one length of strokes that the text states without a doubt."""
+    """Return the only stroke length that the text states, if it is certain; else None."""
     length, _, guess = _stated(values)
     return None if guess else length
 
 
 def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str]:
-    """Return the length and the frequency of strokes as the text has them, and what is guessed."""
+    """Return the stroke length and frequency that the text states, and a guess about them."""
     stroke, frequency, guess = _only(values, "stroke", "m"), _only(values, "frequency", "Hz"), ""
     if stroke is not None and _EITHER_WAY.search(stroke.text):
         stroke = stroke._replace(scale=2.0)
@@ -128,7 +128,7 @@ def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str
 
 
 def _only(values: Sequence[Amount], concept: str, unit: str) -> Amount | None:
-    """Return the one amount of a concept; a sample rate is no frequency of strokes."""
+    """Return the only amount of a concept; a sampling rate is not taken as a stroke frequency."""
     with_unit = Amounts(value for value in values if value.unit)
     one = with_unit.only(concept, unit=unit, but=("sampling_rate",))
     return None if one is None else one._replace(to=unit)
@@ -161,7 +161,7 @@ def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftCo
 
 
 def _change(understood: Understood, columns: Sequence[DraftColumn]) -> bool:
-    """Whether the only column of a setting has several values."""
+    """Whether there is exactly one column of a setting, and its values differ."""
     if len(columns) != 1:
         return False
     values = understood.numbers[:, columns[0].place - 1]

@@ -1,4 +1,4 @@
-"""The zero of a friction signal that the text above a table states, as a force or a torque."""
+"""Zero of the friction force or torque, as stated in the text above a table."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
 _STEP_ZERO = re.compile(rf"{STEP_WORD}\W{{0,3}}0(?!\d)", re.IGNORECASE)
-_ROW = re.compile(r"\s*\"?[01]\"?\s*[,;\t]")  # of a programme: its first step
+_ROW = re.compile(r"\s*\"?[01]\"?\s*[,;\t]")  # first step of a test programme
 STILL = "it is still in the signal"
 _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 
 
 def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "") -> Amount | None:
-    """Return the zero of the friction signal that a file states and that is still in the signal.
+    """Return the stated zero of the friction signal if it has not been subtracted yet, else None.
 
-    It is None if it is unknown whether it was subtracted: see `zero_in_doubt`.
+    If it is unknown whether the zero has been subtracted, see `zero_in_doubt`.
     """
     zero = _stated(values, unit)
     in_it = said == "in it" or (not said and _is_still_in(layout, zero))
@@ -40,7 +40,7 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
 def zero_in_doubt(
     layout: Layout, values: Sequence[Amount], unit: str, said: str = ""
 ) -> Amount | None:
-    """Return a stated zero if it is unknown whether it was subtracted from the signal."""
+    """Return the stated friction zero if it is unknown whether it was subtracted, else None."""
     zero = _stated(values, unit)
     if zero is None or said or _is_still_in(layout, zero):
         return None
@@ -48,7 +48,7 @@ def zero_in_doubt(
 
 
 def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Note that the numbers of the load are read without its stated zeros."""
+    """Return the guesses that stated zeros of the load are already subtracted."""
     forces = any(c.used and c.quantity == "normal_force" for c in columns)
     volts = any(converts(c.file_unit or split_name(c.label)[1] or "", "V") for c in columns)
     zeros = [
@@ -65,10 +65,10 @@ def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[
 
 
 def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Note that friction is read as it is where the text states a start or strokes without load."""
+    """Return a doubt about the friction zero if the text states a start or strokes without load."""
     held = {c.quantity for c in columns if c.used}
     if "normal_force" in held or "friction_coefficient" in held:
-        return []  # the load shows where there is no contact
+        return []  # the load shows when the contact is open
     said = [line for line in layout.sentences() if _says_unloaded_start(line)]
     return [f"the friction is read as it stands, although '{shown(line, 60)}'" for line in said[:1]]
 
@@ -91,7 +91,7 @@ def _says_unloaded_start(line: str) -> bool:
 
 
 def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the friction force column, from which a zero may be subtracted."""
+    """Return the only friction force column, else None."""
     held = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
     return held[0] if len(held) == 1 else None
 
@@ -113,7 +113,7 @@ def _another_line_says(name: str, layout: Layout, zero: Amount | None) -> bool:
 
 def _stated(values: Sequence[Amount], unit: str) -> Amount | None:
     fitting = [value for value in values if _is_zero(value, unit)]
-    if len(fitting) > 1:  # that of the load next to it is another
+    if len(fitting) > 1:  # leave out the zero of the load
         fitting = [value for value in fitting if not _is_of_load(value.key)]
     zero = Amounts(fitting).only()
     return zero if zero is not None and zero.number else None

@@ -1,1 +1,1 @@
-"""How an unknown file is laid out: lines, header, tables."""
+"""Layout of an unknown file: lines, header, tables."""

@@ -1,6 +1,6 @@
-"""Unknown files with named columns: Excel, Parquet, Feather, HDF5, MAT, TDMS and npz.
+"""Layout of unknown files with named columns: Excel, Parquet, Feather, HDF5, MAT, TDMS and npz.
 
-Their columns are laid out as a table below a line of names, with their numbers as they are.
+Their columns become a table below a line of names, with unchanged numbers.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ DRAFTED_FROM = CONTAINERS | {"excel"}
 
 
 def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
-    """Lay the columns of a file out as a table below a line of names.
+    """Return the columns of a file as a table below a line of names, and the columns themselves.
 
     Raises
     ------
     ReadError
-        If it has no columns of numbers of equal length, or is damaged.
+        If the file has no columns of numbers of equal length, or is damaged.
     """
     try:
         held, raw = _workbook(file) if file.container == "excel" else _container(file)
     except (ReadError, ImportError):
         raise
-    except Exception as error:  # each of these libraries reports damage in its own way
+    except Exception as error:  # each of these libraries reports damage differently
         raise ReadError(f"this {file.container} file cannot be read", where=file.path) from error
     placed, settings, clocks, guesses = _whole(raw)
     text = text_of(([clocks.setting] if clocks else []) + settings)
@@ -64,20 +64,20 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
 
 
 def _container(file: File) -> tuple[Held, RawFile]:
-    """Return where columns are in a container, and its tables."""
-    form = {"netcdf": "hdf5"}.get(file.container, file.container)  # both begin alike
+    """Return the format of a container file, and its tables."""
+    form = {"netcdf": "hdf5"}.get(file.container, file.container)  # both have the same first bytes
     return Held(form), _without_units(read_container(file.path, form))
 
 
 def _workbook(file: File) -> tuple[Held, RawFile]:
-    """Return the main sheet of a workbook."""
+    """Return the location and the content of the main sheet of a workbook."""
     held = main_sheet(file.path)
     sheet = read_sheet(file.path, held.sheet, held.line, units_below=held.units_below)
     return held, _without_units(sheet)
 
 
 def _without_units(raw: RawFile) -> RawFile:
-    """Return a file with the units of columns apart from their labels and paths."""
+    """Return the file with the units of columns removed from labels and paths."""
     tables = []
     for table in raw.tables:
         columns = []
@@ -93,9 +93,9 @@ _Placed = list[tuple[str, RawColumn]]  # columns, each with the name of its tabl
 
 
 def _whole(raw: RawFile) -> tuple[_Placed, list[Setting], OneClock | None, tuple[str, ...]]:
-    """Return all columns, on one clock if each has one, the settings, and doubts about the clock.
+    """Return all columns (interpolated to one clock if each has one), settings, clock and doubts.
 
-    Of channels that have no common clock those of the group with most numbers are returned.
+    Of TDMS channels without a common clock, only the group with the most numbers is returned.
     """
     placed = [(t.name, c) for t in raw.tables for c in t.columns if c.values.size]
     doubts: tuple[str, ...] = ()
@@ -113,7 +113,7 @@ def _whole(raw: RawFile) -> tuple[_Placed, list[Setting], OneClock | None, tuple
 
 
 def _held(column: RawColumn, table: str, form: str) -> HeldColumn:
-    """Return a column, of moments as seconds from the first."""
+    """Return a column with the name that the reader uses; dates become seconds from the first."""
     label, unit, values = column.label, column.unit, column.values
     name = label if form == "tdms" else column.path or label
     if values.dtype.kind in "Mm":
@@ -125,7 +125,7 @@ def _held(column: RawColumn, table: str, form: str) -> HeldColumn:
 
 
 def _laid_out(file: File, columns: Sequence[HeldColumn], text: str, rows: int) -> Layout:
-    """Return the layout of a table of so many rows, below a text and the names of columns."""
+    """Return the layout of a table of `rows` rows below a text and a line of column names."""
     cells = tuple(_cell(column) for column in columns)
     if not any(cells):
         raise ReadError("its columns have no names", where=file.path)
@@ -140,13 +140,13 @@ def _laid_out(file: File, columns: Sequence[HeldColumn], text: str, rows: int) -
 
 
 def _cell(column: HeldColumn) -> str:
-    """Return a column's label or meaning, with its unit."""
+    """Return the header cell of a column: its name or meaning, with the unit in brackets."""
     name = " ".join((column.shown or column.label).split())
     return f"{name} [{column.unit}]" if column.unit else name
 
 
 def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -> Understood:
-    """Return what was understood, with the columns named as the file's reader finds them."""
+    """Return the interpretation with the column names by which the reader finds the columns."""
     named = []
     for column, own in zip(understood.columns, columns, strict=True):
         unit = column.unit if own.said or column.unit is not None else own.unit
@@ -159,15 +159,15 @@ def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -
     return understood._replace(columns=tuple(named), missing=())
 
 
-ROWS = 20_000  # rows looked at
-_TOLD = 4  # other tables that are named
+ROWS = 20_000  # rows that are inspected
+_LISTED = 4  # other tables that are named in a guess
 
 
 class HeldColumn(NamedTuple):
-    """A column: its name as the reader finds it, that within its table, its unit, its numbers.
+    """Column of a file: its name for the reader, its label in its table, its unit and numbers.
 
-    `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
-    looks for its meaning, where that is not its name.
+    `said` is True if the reader finds the unit in the file; `shown` is a name for interpretation
+    if the label has no meaning.
     """
 
     name: str
@@ -193,7 +193,7 @@ def better_name(name: str, meaning: str) -> str:
 
 
 def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
-    """Omit tables in groups next to another one with columns of the same names."""
+    """Return the columns without tables whose column names an earlier table also has."""
     kept: dict[str, set[str]] = {}
     left: set[str] = set()
     tables: dict[str, list[str]] = {}
@@ -208,7 +208,7 @@ def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
 
 
 def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:
-    """Name other tables that have columns of the same names as the chosen; "" if none."""
+    """Return the names of other tables that have the column names of the chosen one, or ""."""
     names = {column.label for column in chosen}
     meant = set(map(id, chosen))
     alike: dict[str, int] = {}
@@ -216,7 +216,7 @@ def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> s
         if id(column) not in meant and column.label in names:
             alike[column.table] = alike.get(column.table, 0) + 1
     tables = [f"'{shown(table, 30)}'" for table, count in alike.items() if table and count > 1]
-    return ", ".join(tables[:_TOLD])
+    return ", ".join(tables[:_LISTED])
 
 
 _ABOVE = 40  # rows of a sheet above its names
@@ -224,7 +224,7 @@ _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
 
 
 def main_sheet(path: Path) -> Held:
-    """Return the position of the sheet with the most rows of numbers below names.
+    """Return the sheet with the most rows of numbers, and the line of their names.
 
     Raises
     ------
@@ -245,7 +245,7 @@ def main_sheet(path: Path) -> Held:
 
 
 def _names_row(rows: Sequence[Sequence[object]]) -> int | None:
-    """Return the first row of words with numbers below it, or below a row of units."""
+    """Return the index of the first row of words above numbers, or above units and numbers."""
     for index in range(min(len(rows) - 2, _ABOVE)):
         words = [cell for cell in rows[index] if isinstance(cell, str) and cell.strip()]
         if len(words) < 2 or _is_numeric(rows[index]):
@@ -265,7 +265,7 @@ def _is_numeric(row: Sequence[object]) -> bool:
 
 
 def _is_number(cell: object) -> bool:
-    """Whether a cell is a number, a moment, or a number that was typed as text."""
+    """Whether a cell is a number, a date or time, or a number that was typed as text."""
     if isinstance(cell, str):
         return not math.isnan(decimal(cell))
     return isinstance(cell, (int, float, *_MOMENTS)) and not isinstance(cell, bool)

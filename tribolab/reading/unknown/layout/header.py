@@ -1,4 +1,4 @@
-"""Tables of numbers: their rows, the header above them, and which table is the main one."""
+"""Tables of numbers in a text: their rows, their headers, and the choice of the main table."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from tribolab.units.spellings import MICRO
 if TYPE_CHECKING:
     from tribolab.reading.unknown.layout.lines import Grammar
 
-_ABOVE = 8  # lines above the first row that are looked at
-_MAX_MARK = 80  # characters of it
-_TELLING = 200  # cells that decide whether a row contains units
+_ABOVE = 8  # lines above the first row that may be its header
+_MAX_MARK = 80  # characters of a line that separates header and numbers
+_TELLING = 200  # cells that are searched for units or known names
 _WORD = re.compile(r"\S+")
-# A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
-# look for it, a long line without brackets would be gone through once for each of its words
+# A name of several words with its unit in brackets, or a single word. The length is limited: a long
+# line without brackets would otherwise be searched once for each of its words.
 _BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
-# "Units,um" and "Points,1500" are settings, and name no column
-_SAYS = re.compile(
+# "Units,um" and "Points,1500" are settings, not column names
+_SETTING = re.compile(
     rf"[^\W\d]\W*[,;]\W*(?:{alternatives('unit_alone')}|[-+]?\d[\d.,]*)\W*$"
     rf"|^\W*{alternatives('unit_key')}\s+[^\W\d]{{1,3}}\W*$"
     rf"|(?<![\w.,(\[])\d+(?:[.,]\d+|[.,]?\d*\s?(?:[nmku{MICRO}]?m|Å|Hz|N|s|mm/s|°C)(?![^\W\d_]))"
     r"(?![^()\[\]]*[)\]])",
     re.IGNORECASE,
 )
-# what parts the header from the numbers, and names no column
+# lines that separate the header from the numbers: "End of header"
 _MARK = re.compile(
     rf"\W*(?:{alternatives('ends')}(?=[\W_]|$)[\s_\-]*(?:of|der|des|de[lr]?|du|dell[ao']|da|do|van)?"
     r"[\s_\-]*(?:the|la|l')?[\s_\-]*(?:file|datei)?[\s_\-]*"
@@ -49,15 +49,15 @@ _STEMS = frozenset(stem for word in known_words("run") for stem in (*word.stems,
 _SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.symbols)
 
 
-# what steps of a programme are called
+# words for a step of a test programme
 STEP_WORD = alternatives("step")
 
 
 class Heading(NamedTuple):
-    """A header: index of its line and of the row of units, with their contents.
+    """A header: line indices and cells of the names and of the row of units.
 
-    `aligned` is False where the delimiter does not part the names as it parts the numbers; they
-    are then given by position.
+    `aligned` is False if the delimiter of the numbers does not separate the names; columns are then
+    identified by their position.
     """
 
     names: int
@@ -68,7 +68,7 @@ class Heading(NamedTuple):
 
 
 class Block(NamedTuple):
-    """Lines of numbers that follow one another; indices of lines count from 0."""
+    """Consecutive lines of numbers, with their header; line indices count from 0."""
 
     start: int
     stop: int
@@ -78,16 +78,16 @@ class Block(NamedTuple):
 
 
 def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int) -> Heading | None:
-    """Find the header of the table whose first row is line `start` (from 0)."""
+    """Return the header of the table whose first row is line `start` (from 0), or None."""
     above: list[int] = []
     for index in range(start - 1, max(start - _ABOVE, 0) - 1, -1):
         if numbers := grammar.width(lines[index]):
             if index == start - 1 and numbers == width - 1 > 1:
                 continue  # the first row lacks its last cell, and is left out
             break
-        told = lines[index][:_MAX_MARK]
-        if width == 1 and (_MARK.fullmatch(told) or _SAYS.search(told)):
-            break  # a column is named right above its numbers
+        text = lines[index][:_MAX_MARK]
+        if width == 1 and (_MARK.fullmatch(text) or _SETTING.search(text)):
+            break  # the name of a single column is directly above its numbers
         if lines[index].strip():
             above.append(index)
     if (listed := _listed(lines, above, width)) is not None:
@@ -113,7 +113,7 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
 
 
 def _listed(lines: Sequence[str], above: Sequence[int], width: int) -> Heading | None:
-    """Return the header of comments that list the names of columns, and their units.
+    """Return the header if comment lines list the column names, and perhaps units; else None.
 
     File: JPK NanoWizard, "# columns: height vDeflection", "# units: m N"
     (stemarcotti/AFM-data-plot).
@@ -132,7 +132,7 @@ def _listed(lines: Sequence[str], above: Sequence[int], width: int) -> Heading |
 
 
 def first_cells(line: str, delimiter: str) -> str:
-    """Return the start of a line up to the end of its second cell."""
+    """Return the first two cells of a line as written, or the whole line for blanks."""
     if delimiter == "whitespace":
         return line.strip()
     cells = line.split(delimiter)
@@ -140,9 +140,9 @@ def first_cells(line: str, delimiter: str) -> str:
 
 
 def _cells(line: str, grammar: Grammar, width: int, counted: bool) -> tuple[tuple[str, ...], bool]:
-    """Cells of a header, and whether the reader will find the same ones.
+    """Return the cells of a header, and whether the delimiter of the numbers separates them.
 
-    The number that each row is `counted` by has no name of its own.
+    With `counted`, rows begin with a row number, for which the header may have no name.
     """
     cells = tuple(grammar.cells(line))
     if counted and len(cells) == width - 1 and not any(map(grammar.is_number, cells)):
@@ -176,21 +176,21 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
 
 
 def _is_row_of_units(cells: Sequence[str], grammar: Grammar, width: int) -> bool:
-    """Whether a row contains units for a few columns only: ";N"."""
+    """Whether a row contains only units, perhaps for a few columns only: ";N"."""
     if grammar.delimiter == "whitespace" or len(cells) != width:
         return False
     return any(cells) and all(is_unit(cell.strip("[]() ")) for cell in cells if cell)
 
 
 def names_any(cell: str, *quantities: str) -> bool:
-    """Whether a name may be that of one of some quantities.
+    """Whether the name of a column may mean any of the given quantities.
 
     >>> names_any("FUERZA", "friction_force"), names_any("z [um]", "friction_force", "time")
     (True, False)
     """
     name = unicodedata.normalize("NFD", re.split(r"[\[(]", cell)[0].lower())
     text = "".join(filter(str.isalnum, name))  # without accents
-    bare = text.rstrip("0123456789")  # the number of a table or a sensor
+    bare = text.rstrip("0123456789")  # without the number of a table or a sensor
     return any(
         bare in word.symbols or any(stem in text for stem in (*word.stems, *word.vague))
         for word in known_words("run")
@@ -199,7 +199,7 @@ def names_any(cell: str, *quantities: str) -> bool:
 
 
 def _known(cells: Sequence[str]) -> int:
-    """Count the cells with a known word or symbol."""
+    """Return the number of cells with a known word or symbol."""
     texts = ["".join(filter(str.isalnum, cell.lower())) for cell in cells[:_TELLING]]
     return sum(text in _SYMBOLS or any(stem in text for stem in _STEMS) for text in texts)
 
@@ -211,7 +211,7 @@ def _are_units(cells: Sequence[str]) -> bool:
 
 
 def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
-    """Rows of numbers of equal width that only blank lines part."""
+    """Return the blocks of rows with the same number of cells; they may contain blank lines."""
     blocks: list[Block] = []
     rows: list[int] = []
     width = 0
@@ -235,9 +235,9 @@ def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
         if not cells and rows and grammar.goes_on(line, width):
             cells = width
         if rows and cells > width and grammar.filled(line) <= width:
-            cells = width  # delimiters too many at its end
+            cells = width  # surplus delimiters at the end of the line
         elif len(rows) == 1 and 0 < cells < width and grammar.filled(lines[rows[0]]) <= cells:
-            width = cells  # so had the first row
+            width = cells  # the first row had surplus delimiters
         if cells != width and not (rows and index == last and 0 < cells < width):
             close()
             width = cells
@@ -248,9 +248,9 @@ def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
 
 
 def main_blocks(blocks: list[Block]) -> tuple[list[Block], int]:
-    """Return the blocks under the same header with the most numbers; and the number of others.
+    """Return the blocks of the header that covers the most data, and how many other blocks exist.
 
-    Blocks without a header count only if none of their width has one.
+    Blocks without a header count only if no block of the same width has a header.
     """
     weight: Counter[tuple[tuple[str, ...] | None, int]] = Counter()
     headed = {block.width for block in blocks if block.heading is not None}
@@ -259,7 +259,7 @@ def main_blocks(blocks: list[Block]) -> tuple[list[Block], int]:
             weight[_key(block)] += len(block.rows) * block.width
     key = weight.most_common(1)[0][0]
     main = [block for block in blocks if _key(block) == key]
-    if key[0] is None:  # without a header nothing joins several tables
+    if key[0] is None:  # without a header, it is unknown which tables belong together
         main = [max(main, key=lambda block: len(block.rows))]
     return main, len(blocks) - len(main)
 

@@ -1,4 +1,4 @@
-"""How the lines of a text file are written: encoding, line ends, delimiter, decimal mark."""
+"""Notation of the lines of a text file: encoding, line ends, delimiter, decimal mark."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tribolab.reading.text.first_bytes import HEAD, wide_encoding
 from tribolab.units.spellings import MICRO
 
 _EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
-_BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
-_VOTERS = 300  # lines at the start and at the end that decide on the delimiter
+_BLANKS = 1.02  # factor by which blanks must give more numbers than another delimiter
+_VOTERS = 300  # lines at each end of the file from which the delimiter is found
 DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", "whitespace": "blanks"}
 _NUMBER = {
     ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
@@ -32,8 +32,8 @@ _NO_NUMBER = re.compile(
 
 
 _HALVES = re.compile(r"([+-]?\d+),(\d+)")
-_ROWS = 16  # rows that decide
-_ONE_NAME = re.compile(r"[^\[\](),;\t]+[\[(][^\[\](),;\t]+[\])]")  # a heading as "Height [nm]"
+_ROWS = 16  # fewest rows for a decision
+_ONE_NAME = re.compile(r"[^\[\](),;\t]+[\[(][^\[\](),;\t]+[\])]")  # a header such as "Height [nm]"
 
 
 class Grammar:
@@ -49,7 +49,7 @@ class Grammar:
         self._plain = re.compile(f"{cell}(?:{gap}{cell})*")
 
     def cells(self, line: str) -> list[str]:
-        """Cells of a line."""
+        """Return the cells of a line."""
         return split_row(line, self.delimiter)
 
     def is_number(self, cell: str) -> bool:
@@ -57,7 +57,7 @@ class Grammar:
         return self._number.fullmatch(cell) is not None
 
     def merit(self, line: str) -> tuple[int, int]:
-        """Return the number of cells, and by how much numbers outweigh text (0: not a row)."""
+        """Return the number of cells, and the excess of numbers over texts; 0 if it is no row."""
         if self.is_plain(line):
             parts = line.split(self._mark)
             return len(parts), sum(1 for part in parts if part.strip())
@@ -90,14 +90,14 @@ class Grammar:
         return len(line.rstrip(f"{self._mark} ").split(self._mark))
 
     def is_footer(self, line: str) -> bool:
-        """Whether a line of numbers begins with a word: "Mean" below a column of times."""
+        """Whether a line begins with a word, such as "Mean" below a column of times."""
         first = self.cells(line)[0]
         return bool(first) and not self.is_number(first) and not _NO_NUMBER.fullmatch(first)
 
     def goes_on(self, line: str, width: int) -> bool:
-        """Whether a line can be a row in the midst of others: half of it may be error codes."""
+        """Whether a line can be a row of a table although up to half of its cells are text."""
         cells = self.cells(line)
-        if width == 1:  # a value that is missing: where rows are counted it has to stay
+        if width == 1:  # a missing value; it is kept so that the rows remain counted
             return len(cells) == 1 and bool(_MISSING.fullmatch(cells[0]))
         numbers = sum(map(self.is_number, cells))
         filled = sum(1 for cell in cells if cell)
@@ -105,10 +105,10 @@ class Grammar:
 
 
 def find_encoding(head: bytes) -> tuple[str, list[str]]:
-    """Return the encoding, and what was guessed of it (which changes no number).
+    """Return the encoding, and a guess about it, on which no number depends.
 
-    Text that is not UTF-8 is in the encoding in which it has the most known words; without any in
-    that of Western Europe.
+    For text that is not UTF-8, this is the encoding that gives the most known words; if there are
+    none, the Western European one.
     """
     if wide := wide_encoding(head):
         return wide, []
@@ -138,12 +138,12 @@ def _terms_with_own_letters() -> frozenset[str]:
 
 
 def _of_single_bytes(head: bytes) -> str:
-    """Return the single-byte encoding that gives the most words of laboratories."""
+    """Return the single-byte encoding that gives the most words of the lexicon."""
     said = {}
     for name in _SINGLE_BYTES:
         text = head[:_BEGINNING].decode(name, errors="replace").lower()
         said[name] = sum(len(term) for term in _terms_with_own_letters() if term in text)
-    best = max(said, key=lambda name: said[name])  # of equals the first
+    best = max(said, key=lambda name: said[name])  # the first of equally good ones
     if said[best]:
         return best
     return "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
@@ -157,7 +157,7 @@ def _eastern(head: bytes) -> str:
             text = codecs.getincrementaldecoder(name)().decode(head, final=len(head) < HEAD)
         except UnicodeDecodeError:
             continue
-        written = "".join(text.lower().split())  # as words are in the vocabulary
+        written = "".join(text.lower().split())  # in the notation of the lexicon
         known[name] = 2 * sum(word in written for word in eastern_words())
         known[name] += bool(_EASTERN_UNITS.search(text)) and name != "cp1251"
     best = max(known, key=lambda name: known[name], default="")
@@ -165,7 +165,7 @@ def _eastern(head: bytes) -> str:
 
 
 def find_line_ends(raw: bytes) -> str:
-    """Return the line ends, the most common first."""
+    """Return the kinds of line ends in a file, the most common first: "CR LF and LF"."""
     twice = raw.count(b"\r\r\n")
     both = raw.count(b"\r\n") - twice
     counts = {
@@ -179,11 +179,11 @@ def find_line_ends(raw: bytes) -> str:
 
 
 def find_grammar(lines: Sequence[str]) -> Grammar | None:
-    """Return the delimiter and decimal mark that make most numbers of the lines."""
+    """Return the delimiter and decimal mark that give the most numbers; None without numbers."""
     filled = [line for line in lines if line.strip()]
     voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
     best, highest = None, 0
-    alone = False  # a delimiter that is in no line splits nothing: trying one such is enough
+    alone = False  # delimiters that no line contains all give the same: one of them is tried
     for delimiter in DELIMITERS:
         if delimiter != "whitespace" and not any(delimiter in line for line in voters):
             if alone:
@@ -198,26 +198,26 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
                 width, merit = grammar.merit(line)
                 votes[width] += merit
             top = max(votes.values(), default=0)
-            # in the order of DELIMITERS: a tab is also a blank, which joins a few lines more
+            # tabs come first in DELIMITERS; blanks include tabs and split a few more lines
             if top > (_BLANKS if delimiter == "whitespace" else 1.0) * highest:
                 best, highest = grammar, top
     return Grammar("\t", ",") if best and _one_column(best, voters) else best
 
 
 def _one_column(grammar: Grammar, voters: Sequence[str]) -> bool:
-    """Whether commas are decimal marks of one column, and do not part two of whole numbers.
+    """Whether commas are decimal marks of one column instead of delimiters of two columns.
 
-    The heading above shows that it names one, or that numbers have a comma as in 3,05.
+    They are if the header names one column, or if a zero follows the comma in some rows (3,05).
     """
     if grammar.delimiter != ",":
         return False
     halves = [_HALVES.fullmatch(line.strip()) for line in voters]
-    parts = [told for told in halves if told]
+    parts = [match for match in halves if match]
     if len(parts) < _ROWS or 2 * len(parts) < len(voters):
         return False
-    first = next(place for place, told in enumerate(halves) if told)
+    first = next(place for place, match in enumerate(halves) if match)
     if first and _ONE_NAME.fullmatch(voters[first - 1].strip()):
         return True
-    # no whole number is written 0312
-    leading = sum(told[2].startswith("0") and len(told[2]) > 1 for told in parts)
+    # no integer is written as 0312
+    leading = sum(match[2].startswith("0") and len(match[2]) > 1 for match in parts)
     return 50 * leading >= len(parts)

@@ -1,8 +1,7 @@
 """Header of LabVIEW's measurement files (.lvm): units, and the meaning of X.
 
-The lines are those of the maker's "Specification for the LabVIEW Measurement File (.lvm)", as files
-in the tests of published readers have them: ``Y_Unit_Label`` and ``X_Dimension``, a cell for each
-column.
+The lines ``Y_Unit_Label`` and ``X_Dimension`` have a cell for each column. They are described in
+"Specification for the LabVIEW Measurement File (.lvm)", and occur in test files of public readers.
 """
 
 from __future__ import annotations
@@ -18,14 +17,14 @@ _DIMENSIONS = {"Time": "s", "Frequency": "Hz"}
 
 
 def units_above(layout: Layout) -> dict[int, str]:
-    """Return the units of the columns (from 1) from the lines above the names.
+    """Return the units that lines above the column names state, by column number from 1.
 
-    It is empty for files that are not LabVIEW's.
+    The result is empty for files that are not LabVIEW's.
     """
-    heading, said = layout.heading, _said_above(layout)
+    heading, said = layout.heading, _header_cells(layout)
     if heading is None:
         return {}
-    # without an X column the first channel is below the names of the lines
+    # without an X column, the first channel is below the names of the header lines
     first = 2 if heading.cells[:1] in ((_X,), ("",)) else 1
     units = {
         place: unit for place, unit in enumerate(said.get("Y_Unit_Label", ()), start=first) if unit
@@ -38,16 +37,16 @@ def units_above(layout: Layout) -> dict[int, str]:
 
 
 def interval_above(layout: Layout) -> tuple[str, str] | None:
-    """Return a pattern of the sampling interval and its unit, if there is no X column."""
-    said = _said_above(layout)
+    """Return a pattern that finds the stated sampling interval, and its unit; else None."""
+    said = _header_cells(layout)
     apart, of = said.get("Delta_X", []), said.get("X_Dimension", ["Time"])
     if not apart or not apart[0] or of[:1] != ["Time"]:
         return None
     return r"^Delta_X\s+([-+\d.,eE]+)", "s"
 
 
-def _said_above(layout: Layout) -> dict[str, list[str]]:
-    """Return the cells of the lines above the names by what each is called."""
+def _header_cells(layout: Layout) -> dict[str, list[str]]:
+    """Return the cells of each line above the column names, by the first cell of the line."""
     heading = layout.heading
     if heading is None or not layout.lines[0].startswith(_MARK):
         return {}

@@ -1,4 +1,4 @@
-"""Patterns by which a reader finds what a draft saw: headers, numbers of steps, the table's end."""
+"""Patterns in a drafted dialect that find headers, step numbers and the end of a table."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from tribolab.reading.text.first_bytes import HEAD, File
 from tribolab.reading.unknown.layout.header import STEP_WORD, Block, first_cells
 from tribolab.reading.unknown.layout.lines import Grammar
 
-_TAIL = 1 << 14
-_TRIED = 20  # patterns of a step's number
+_TAIL = 1 << 14  # bytes at the end of a file
+_TRIED = 20  # patterns of step numbers that are tried
 
 
 def header_pattern(
     lines: tuple[str, ...], blocks: list[Block], grammar: Grammar
 ) -> tuple[str | None, bool]:
-    """Return a pattern that finds the headers and nothing else; whether there are several."""
+    """Return a pattern that matches only the header lines, and whether there are several."""
     wanted = [block.heading.names for block in blocks if block.heading]
     headers = list(dict.fromkeys(lines[index] for index in wanted))
     repeats = len(wanted) > 1
     if wanted == [0]:
         return None, False
-    spaced = grammar.delimiter == "whitespace"  # then no line begins with a blank when it is read
+    spaced = grammar.delimiter == "whitespace"  # the reader then removes leading blanks
     for short in (True, False):
         texts = [
             escaped(first_cells(line, grammar.delimiter) if short else line.strip() or line)
@@ -38,7 +38,7 @@ def header_pattern(
             for i, line in enumerate(lines)
             if re.match(pattern, line.lstrip() if spaced else line)
         ]
-        if len(pattern) > MAX_PATTERN:  # no dialect takes it
+        if len(pattern) > MAX_PATTERN:  # too long for a dialect
             continue
         if matched == wanted or (not repeats and matched[:1] == wanted):
             return pattern, repeats
@@ -46,18 +46,18 @@ def header_pattern(
 
 
 def step_pattern(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
-    """Return a pattern for the steps' numbers, if they are in the text before each header."""
+    """Return a pattern that finds the step number in the text before each header, or None."""
     texts, done = [], 0
     for block in blocks:
         texts.append(lines[done : block.heading.names if block.heading else block.start])
         done = block.stop
     tried: set[str] = set()
     for line in texts[0]:
-        told = re.match(rf"(?i)(\W*(?:[a-z]+ ?- ?|{STEP_WORD}\D{{0,5}}))(\d+)\b", line)
-        told = told or re.match(r"(.* - )(\d+)$", line)
-        if not told:
+        title = re.match(rf"(?i)(\W*(?:[a-z]+ ?- ?|{STEP_WORD}\D{{0,5}}))(\d+)\b", line)
+        title = title or re.match(r"(.* - )(\d+)$", line)
+        if not title:
             continue
-        general = r"^.* - (\d+)$" if told[1].endswith(" - ") else f"^{escaped(told[1])}(\\d+)"
+        general = r"^.* - (\d+)$" if title[1].endswith(" - ") else f"^{escaped(title[1])}(\\d+)"
         if general in tried:
             continue
         tried.add(general)
@@ -73,7 +73,7 @@ def step_pattern(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
 
 
 def last_lines(file: File, encoding: str) -> list[str]:
-    """Last lines of a file longer than what is looked at."""
+    """Return the last lines of a file that is larger than the inspected first megabyte."""
     if file.size <= HEAD:
         return []
     with file.path.open("rb") as handle:
@@ -85,7 +85,7 @@ def last_lines(file: File, encoding: str) -> list[str]:
 def end_pattern(
     lines: tuple[str, ...], blocks: list[Block], tail: list[str], grammar: Grammar
 ) -> str | None:
-    """Return a pattern for the line that ends the table, if there is text below it."""
+    """Return a pattern for the first line of text below the table; None if there is no text."""
     stops: list[tuple[Sequence[str], int]] = [(lines, block.stop) for block in blocks]
     if tail:
         stops[-1] = (

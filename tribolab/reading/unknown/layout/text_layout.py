@@ -1,6 +1,6 @@
-"""How an unknown text file is written: encoding, line ends, delimiter, decimal mark, tables.
+"""Layout of an unknown text file: encoding, line ends, delimiter, decimal mark, tables.
 
-Only the first megabyte is looked at line by line, and the end of a longer file for a footer.
+Only the first megabyte is inspected line by line, and the end of a longer file for a footer.
 """
 
 from __future__ import annotations
@@ -49,17 +49,17 @@ from tribolab.reading.unknown.layout.patterns import (
 )
 
 _LAST_LINES = 20  # lines at the end that show the delimiter
-_CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
-_MAX_COLUMNS, _MIN_WIDE_ROWS = 1000, 5  # a lost line end makes few rows of many columns
-_MAX_ABOVE = 500  # lines of text above a table that are looked at
-_MAX_LINE = 300  # characters of such a line that patterns of whole sentences are sought in
+_CELLS = 4  # delimiters per column, at most: blanks for alignment, decimal commas
+_MAX_COLUMNS, _MIN_WIDE_ROWS = 1000, 5  # files without line ends seem to have few, wide rows
+_MAX_ABOVE = 500  # lines of text above a table that are inspected
+_MAX_LINE = 300  # characters of such a line that are searched
 
 
 class Held(NamedTuple):
-    """Where columns are in a file that names them: its format, and of a workbook the sheet.
+    """Location of the table in a file with named columns: the format, and the sheet of a workbook.
 
-    `increment` is the time [s] from row to row where the file has a clock and no column of it;
-    `others` names tables besides the chosen one that have columns of the same names.
+    `increment` is the sampling interval [s] if the file states it; `others` lists other tables
+    with the same column names.
     """
 
     form: str
@@ -71,10 +71,10 @@ class Held(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """How a file is written, and the lines of its main table (or of its repeated tables).
+    """Layout of a file, and the lines of its main table (or of its repeated tables).
 
-    `numbers` are those of the rows (rows, columns) where the file holds them as numbers: `lines`
-    are then what it says above them.
+    If the file stores binary numbers, they are in `numbers` (rows, columns), and `lines` is only
+    the text above them.
     """
 
     file: File
@@ -105,18 +105,19 @@ class Layout(NamedTuple):
 
     @property
     def delimiter_name(self) -> str:
-        """The delimiter in a word."""
+        """The delimiter in words."""
         return DELIMITERS[self.delimiter]
 
     def text_above(self, *, bare: bool = False) -> tuple[str, ...]:
-        """Return the lines above the table, its first ones at most: none are above bare numbers.
+        """Return the first lines of the text above the table.
 
-        Where a file begins with its table they are those below it.
+        If the file begins with its table, return the lines below the table.
 
         Parameters
         ----------
         bare
-            Whether numbers without a header have text above them, too: heights do.
+            Whether a table without a header may have text above it, as heights do. Without
+            `bare`, such a table has none.
         """
         stop = self.blocks[0].start if bare and self.blocks else 0
         stop = self.heading.names if self.heading is not None else stop
@@ -125,17 +126,17 @@ class Layout(NamedTuple):
         return self.foot[:_MAX_ABOVE] if nothing else above
 
     def sentences(self, *, bare: bool = False) -> list[str]:
-        """Return the beginnings of these lines, without blanks around them."""
+        """Return the lines of `text_above`, without blanks around them and cut if very long."""
         return [line.strip()[:_MAX_LINE] for line in self.text_above(bare=bare)]
 
     @property
     def named_sentences(self) -> list[str]:
-        """The sentences, and the file's name."""
+        """The lines of `sentences`, and the name of the file."""
         return [*self.sentences(), self.file.path.stem]
 
     @property
     def units_line(self) -> int:
-        """Line of the units below the names; a row of delimiters does not count."""
+        """How many lines the units are below the names, without blank lines; 0 without units."""
         heading = self.heading
         if heading is None or heading.units is None:
             return 0
@@ -144,11 +145,11 @@ class Layout(NamedTuple):
 
     @property
     def row_count(self) -> int:
-        """How many rows of numbers were looked at."""
+        """Number of rows of numbers that were inspected."""
         return sum(len(block.rows) for block in self.blocks)
 
     def rows(self, most: int | None = None) -> list[str]:
-        """Lines of numbers of all blocks, their cells in the order of the first; the first ones."""
+        """Return the first rows of all blocks, with the cells in the order of the first block."""
         if self.numbers is not None:
             return ["\t".join(f"{x:.9g}" for x in row) for row in self.numbers[:most]]
         return [line for block in self.blocks for line in self._in_order(block)][:most]
@@ -161,7 +162,7 @@ class Layout(NamedTuple):
             return lines
         left = list(enumerate(block.heading.cells))
         places = []
-        for name in self.heading.cells:  # of a name used twice, the first stays the first
+        for name in self.heading.cells:  # equal names keep their order
             place = next(place for place, cell in left if cell == name)
             left.remove((place, name))
             places.append(place)
@@ -171,7 +172,7 @@ class Layout(NamedTuple):
 
 
 def _refuse_wide(file: File, lines: Sequence[str]) -> None:
-    """Refuse a table whose rows have far too many cells, before they are looked at one by one."""
+    """Raise if rows have far too many cells, before each row is inspected."""
     filled = [line for line in lines if line.strip()]
     widths = [max(len(line.split()), *map(line.count, "\t;,")) for line in filled]
     wide = [width for width in widths if width > _CELLS * limits.COLUMNS.value]
@@ -184,12 +185,12 @@ def _refuse_wide(file: File, lines: Sequence[str]) -> None:
 
 
 def find_layout(file: File) -> Layout:
-    """Find out how a text file is written.
+    """Return the layout of a text file.
 
     Raises
     ------
     ReadError
-        If it holds no table of numbers.
+        If the file contains no table of numbers.
     """
     encoding, notes = find_encoding(file.head)
     guesses: list[str] = []
@@ -213,7 +214,7 @@ def find_layout(file: File) -> Layout:
         )
     blocks = find_blocks(lines, grammar)
     main, others = main_blocks(blocks)
-    main, skipped = _with_rows_that_go_on(lines, blocks, main, grammar)
+    main, skipped = _with_rows_after_events(lines, blocks, main, grammar)
     first = main[0]
     guesses += _rows_that_may_belong(lines, blocks, main, grammar)
     rows = sum(len(block.rows) for block in main)
@@ -230,7 +231,7 @@ def find_layout(file: File) -> Layout:
     tail = last_lines(file, encoding)
     end = end_pattern(lines, main, tail, grammar)
     if tail and pattern is not None and end is not None:
-        repeats = True  # only then is the whole file searched for the end of the table
+        repeats = True  # so that the reader searches the whole file for the end of the table
     if heading:
         below = (heading.names if heading.units is None else heading.units) + 1
         skip = sum(1 for index in range(below, first.start) if lines[index].strip())
@@ -264,14 +265,14 @@ def find_layout(file: File) -> Layout:
     )
 
 
-def _with_rows_that_go_on(
+def _with_rows_after_events(
     lines: Sequence[str], blocks: Sequence[Block], main: list[Block], grammar: Grammar
 ) -> tuple[list[Block], str | None]:
-    """Add to one table the rows below events, and return the pattern of the events' lines.
+    """Join the rows between lines of events to one table, and return a pattern for these lines.
 
-    Its first numbers rise on as a clock does. An event that states an amount or begins a step
-    may change what the rows are. File: Phoenix TE 77 (Compend 2000), "Fast data in ..." between
-    rows.
+    This is done only if the first numbers of all rows increase like a clock, and if no event
+    states an amount or begins a step, which may change the meaning of the rows. File: Phoenix TE 77
+    (Compend 2000), "Fast data in ..." between rows.
     """
     if len(main) != 1:
         return main, None
@@ -309,7 +310,7 @@ def _first_number(line: str, grammar: Grammar) -> float:
 def _rows_that_may_belong(
     lines: Sequence[str], blocks: Sequence[Block], main: Sequence[Block], grammar: Grammar
 ) -> list[str]:
-    """Note rows below a line of text that are not read, although the table may continue."""
+    """Return a guess if rows below a line of text are not read, but may belong to the table."""
     chosen = next(n for n, block in enumerate(blocks) if block.stop >= main[-1].stop)
     later = blocks[chosen + 1 :]
     alike = (b for b in later if b.heading is None and b.width == main[-1].width)
@@ -322,7 +323,7 @@ def _rows_that_may_belong(
 def _foot(
     lines: Sequence[str], main: Sequence[Block], tail: Sequence[str], grammar: Grammar
 ) -> tuple[str, ...]:
-    """Return the lines below the table."""
+    """Return the lines of text below the table."""
     if not tail:
         return tuple(lines[main[-1].stop :])
     last = max((n for n, row in enumerate(tail, 1) if grammar.width(row)), default=len(tail))
