@@ -18,7 +18,7 @@ _LAST_NUMBER = re.compile(r"[ _-]*\d+$")
 
 
 def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
-    """Return what a file contains, from its content or its instrument.
+    """Return whether a file is a run, a scan or results, from its content or its instrument.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
         return "scan" if is_scan(dialect) else "run"
     try:
         file = peek(path)
-    except ReadError:  # no file, an empty one, or a format of profilometers
+    except ReadError:  # missing, empty, or in a format of profilometers
         return "scan" if _is_map(path) else "unknown"
     if file.format != "text" and _is_map(path):
         return "scan"
@@ -66,11 +66,11 @@ def _is_map(path: Path) -> bool:
             head = file.read(16)
         if not is_of_arrays(path, head) or carries_seal(path):
             return False
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.scans.formats.arrays import is_map_file
 
         return is_map_file(path)
-    except (OSError, ValueError, ImportError, ReadError):  # whoever reads it says why
+    except (OSError, ValueError, ImportError, ReadError):  # whoever reads the file reports it
         return False
 
 

@@ -1,6 +1,6 @@
-"""Read a run of any instrument: one that is not known is described from its file, if that says all.
+"""Reading of runs of any instrument; for an unknown one, a dialect is drafted from the file.
 
-The face of `tribolab.reading.runs.read_run` for whoever does not know beforehand what wrote a file.
+`tribolab.reading.runs.read_run` reads the runs of known instruments only.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ DRAFTED = "drafted from the file"
 
 
 class _Described(Protocol):
-    """A run in any form: it has attributes."""
+    """Any form of a run: a dataset or signals, with attributes."""
 
     @property
     def attrs(self) -> dict[Any, Any]: ...
@@ -47,7 +47,7 @@ def read_run(
     instrument: Instrument | None = None,
     **options: Unpack[runs.Reading],
 ) -> xr.Dataset:
-    """Read one run; a file that no dialect knows is read by one that is drafted from it.
+    """Read one run, with a dialect drafted from the file if no known dialect fits.
 
     Parameters
     ----------
@@ -58,14 +58,15 @@ def read_run(
     -------
     xarray.Dataset
         As from `tribolab.read`. Attributes of a drafted description: ``instrument`` states that
-        it is drafted, ``to_keep_it`` how to store it, ``without_unit`` what lacks a unit and is
-        not used, ``left_out`` doubtful columns that are not needed, and ``drafted_layout`` a
+        it is drafted, ``to_keep_it`` how to store it, ``without_unit`` lists lines that are not
+        used as they lack a unit, ``left_out`` doubtful columns that are not needed,
+        and ``drafted_layout`` a
         checksum that files of one layout share.
 
     Raises
     ------
     ReadError
-        If the file cannot be read; of one that says too little itself, with the guesses.
+        If the file cannot be read. If its header states too little, the message lists guesses.
     ConfigError
         If there is no such instrument.
     """
@@ -81,9 +82,9 @@ def read_run(
 def read_log(
     path: PathLike, instrument: Instrument | None = None, excerpt: Path | None = None
 ) -> Signals:
-    """Read one raw file by itself, as arrays; see `read_run` and `read_run.read_log`.
+    """Read one raw file as arrays, without its companion log.
 
-    With an excerpt of the file, its dialect is the file's, and its numbers are the excerpt's.
+    With an excerpt, the dialect is found from the whole file, and the excerpt is read.
     """
     file = Path(path)
     source = excerpt or file
@@ -95,13 +96,13 @@ def read_log(
 
 
 def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run]) -> _Run:
-    """Read by the dialect that is known, else by one that is drafted from the file."""
+    """Read a run with the known dialect, else with one that is drafted from its first file."""
     attrs: dict[str, str] = {}
     try:
         return read(instrument, False)
     except UnknownFileError as error:
         if Path(error.where) != paths[0]:
-            raise  # some files of the run are a known instrument's
+            raise  # the first file is of a known instrument
         dialect = _drafted(paths[0], error)
     except LacksError as error:
         other = None if instrument is not None or len(paths) > 1 else _complete_dialect(paths[0])
@@ -114,16 +115,16 @@ def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run
 
 
 def is_run_file(path: Path, *, by_name: bool = True) -> bool:
-    """Whether a file that no dialect knows holds a run, by names in its header or at all."""
+    """Whether a file of an unknown instrument contains a run; `by_name`: by its column names."""
     draft = draft_of(path)
     if draft is None:
         return _has_signals(path)
-    in_columns = draft.layout is not None and draft.layout.held is not None  # which have names
+    in_columns = draft.layout is not None and draft.layout.held is not None  # these have names
     return draft.kind == "run" and (draft.named or not by_name or in_columns)
 
 
 def _has_signals(path: Path) -> bool:
-    """Whether a file is of a format that no profilometer writes."""
+    """Whether a file has a format of recorded signals: TDMS, Parquet or Feather."""
     try:
         return peek(path).format in ("tdms", "parquet", "feather")
     except ReadError:
@@ -131,8 +132,8 @@ def _has_signals(path: Path) -> bool:
 
 
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
-    """Return the dialect that a file's own header makes; else say what it leaves open."""
-    # late: starting stays quick
+    """Return the dialect drafted from a file; raise an error if it leaves questions open."""
+    # imported late for a quick start
     from tribolab.reading.moduli import is_modulus_file
     from tribolab.reading.unknown.proposal.answers import leave_out_doubtful
 
@@ -168,8 +169,8 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
 
 
 def left_open(draft: Draft) -> ReadError | None:
-    """Return what a file leaves open that a run or profile needs; None if it says all of it."""
-    # late: starting stays quick
+    """Return an error with the open questions about a run or profile; None if there are none."""
+    # imported late for a quick start
     from tribolab.reading.unknown.proposal.answers import leave_out_doubtful
     from tribolab.reading.unknown.proposal.questions import (
         GuessedError,
@@ -195,7 +196,7 @@ def left_open(draft: Draft) -> ReadError | None:
 
 
 def measures_other_things(draft: Draft) -> bool:
-    """Whether no column of a table is in a unit of length, and most are in others: kg, deg, N."""
+    """Whether most columns of a table have units, but none a unit of length: kg, deg, N."""
     columns = draft.understood.columns if draft.understood is not None else ()
     units = [column.file_unit or split_name(column.label)[1] or "" for column in columns]
     stated = [unit for unit in units if measures_something(unit)]
@@ -203,8 +204,8 @@ def measures_other_things(draft: Draft) -> bool:
 
 
 def _complete_dialect(path: Path) -> Dialect | None:
-    """Return the dialect that a file's own header makes, if it leaves nothing open."""
-    # late: starting stays quick
+    """Return the dialect drafted from a file if it leaves no question open, else None."""
+    # imported late for a quick start
     from tribolab.reading.unknown.proposal.questions import missing_words, questions
 
     draft = draft_of(path)
@@ -214,10 +215,10 @@ def _complete_dialect(path: Path) -> Dialect | None:
 
 
 def draft_of(path: Path) -> Draft | None:
-    """Draft a dialect; None of what it cannot be drafted from, or holds no table."""
+    """Return the draft of a dialect for a file; None if it cannot be drafted."""
     try:
         return _drafted_once(path)
-    except (ReadError, OSError, ImportError):  # which `_drafted` says
+    except (ReadError, OSError, ImportError):  # `_drafted` reports why
         return None
 
 
@@ -229,19 +230,19 @@ def _drafted_once(path: Path) -> Draft:
     return drafted
 
 
-@functools.lru_cache(maxsize=1)  # whether it is a run is asked just before it is read
+@functools.lru_cache(maxsize=1)  # the same file is drafted to find its kind, and then to read it
 def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft | ReadError:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.unknown.proposal.draft import draft_dialect
 
     try:
         return draft_dialect(path)
-    except ReadError as error:  # to find it out once more would take as long
+    except ReadError as error:  # cached, as drafting again would take as long
         return error
 
 
 def _guess_attrs(path: Path) -> dict[str, str]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.unknown.proposal.answers import leave_out_doubtful
     from tribolab.reading.unknown.proposal.questions import how_to_keep, without_unit_and_missed
 
@@ -257,6 +258,6 @@ def _guess_attrs(path: Path) -> dict[str, str]:
 
 
 def _checksum(draft: Draft) -> str:
-    """Return what files of one layout have in common: the dialect, but for its name."""
+    """Return a checksum of the dialect without its name, equal for files of one layout."""
     text = "" if draft.dialect is None else draft.dialect.model_dump_json(exclude={"name", "title"})
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -128,7 +128,7 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
         if kind == "table" and find_gain(layout, columns, "friction_force") is not None:
             kind = "run"  # volts with a stated gain
         return _Interpretation(kind, columns, pitched=spacing.is_stated)
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.unknown.columns.behaviour import by_behaviour
 
     kind, columns, guesses = by_behaviour(columns, numbers, (along, unit))
@@ -139,7 +139,7 @@ def _numbers_its_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> 
     """Whether rows and columns are numbered like those of a map."""
     if len(columns) <= _MIN_NUMBERED:
         return False
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.scans.formats.matrix import are_numbered
 
     counted = bool((np.diff(numbers[:, 0]) == 1).all())

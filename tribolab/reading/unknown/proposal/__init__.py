@@ -1,1 +1,1 @@
-"""The proposed dialect: shown, asked about, written."""
+"""Draft of a dialect for an unknown file: how it is shown, corrected and written."""

@@ -1,4 +1,4 @@
-"""A draft as a person corrects and calibrates it, and without doubtful columns not needed."""
+"""Changes of a draft: the user's corrections and calibrations, and removal of doubtful columns."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ AnyDraft = TypeVar("AnyDraft", bound=Drafted)
 
 
 def column_of(draft: Drafted, name: str) -> DraftColumn | None:
-    """Return the column of a quantity, even if its unit is still unknown."""
+    """Return the column of a quantity, even if its unit is still unknown; None if there is none."""
     columns = draft.understood.columns if draft.understood else ()
     held = [c for c in columns if c.quantity == name and (c.used or c.fill_in)]
     return held[0] if held else None
 
 
 def fits(unit: str, name: str) -> bool:
-    """Whether a quantity can be written in a unit."""
+    """Whether a unit has the dimension of a quantity."""
     known = quantity(name)
     return converts(unit, known.unit, known.bare)
 
@@ -39,28 +39,28 @@ def corrected(
     *,
     scale: float = 1.0,
 ) -> AnyDraft:
-    """Return a draft with a column assigned to a quantity by a person.
+    """Return a draft in which the user assigned a column to a quantity.
 
     Parameters
     ----------
     draft
         From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
     name
-        The quantity; or "torque" or "angle", which a radius makes a friction force or
-        a position.
+        The quantity; or "torque" or "angle", from which a radius gives a friction force or a
+        position.
     place
-        Number of its column, from 1; None without a column.
+        Number of its column, from 1; None if no column contains it.
     unit
-        What its numbers are written in; None if the file says it.
+        Unit of the numbers; None if the file states it.
     sign
-        -1 if it is counted the other way round.
+        -1 if the numbers have the opposite sign.
     scale
-        How many units one of its numbers is.
+        Calibration factor: the number of units per count.
 
     Raises
     ------
     ReadError
-        If there is no such column, or its unit is neither given nor said in the file.
+        If there is no such column, or its unit is stated neither here nor in the file.
     """
     layout, before = draft.layout, draft.understood
     if layout is None or before is None:
@@ -70,9 +70,9 @@ def corrected(
     columns = []
     for column in before.columns:
         if column.place == place:
-            columns.append(_said(column, Worth(name, unit or "", scale), sign, draft))
+            columns.append(_as_described(column, Worth(name, unit or "", scale), sign, draft))
         elif name == "x" and column.quantity == "y" and unit and column.guessed:
-            columns.append(column._replace(unit=unit, guessed=(), options=()))  # as x, of a map
+            columns.append(column._replace(unit=unit, guessed=(), options=()))  # as x
         elif name in (column.quantity, column.said):
             note = "not this quantity, as was said"
             columns.append(
@@ -88,8 +88,8 @@ def corrected(
     return draft.with_understood(understood)
 
 
-def _said(column: DraftColumn, worth: Worth, sign: int, draft: Drafted) -> DraftColumn:
-    """Return a column as a person describes it: nothing of it is a guess."""
+def _as_described(column: DraftColumn, worth: Worth, sign: int, draft: Drafted) -> DraftColumn:
+    """Return a column as the user describes it, without guesses."""
     name, unit, scale = worth
     measured = name in QUANTITIES
     read = unit or column.file_unit
@@ -115,10 +115,10 @@ _MOTION = {"position", "rotation_speed", "set_speed", "rolling_speed", "slide_ro
 
 
 def leave_out_doubtful(draft: AnyDraft) -> tuple[AnyDraft, tuple[str, ...]]:
-    """Return a draft of a run without doubtful columns that no result needs, and what they are.
+    """Return the draft of a run without doubtful columns that no result needs, and a list of these.
 
-    Friction, load and speed may each be certain from one column: then no other column of them is
-    needed. A time is always needed.
+    A doubtful column is not needed if another column gives the same result with certainty. Time is
+    always needed.
     """
     understood = draft.understood
     if understood is None or draft.kind != "run":
@@ -137,7 +137,7 @@ def _is_doubtful(column: DraftColumn) -> bool:
 
 
 def _is_needed(quantity: str | None, certain: set[str | None]) -> bool:
-    """Whether a result would be a guess with this quantity, or missing without it."""
+    """Whether results depend on a doubtful quantity, given the quantities that are certain."""
     if quantity in _FORCES:
         return "friction_coefficient" not in certain
     if quantity in _MOTION:
@@ -154,7 +154,7 @@ def _doubt_of(column: DraftColumn) -> str:
     return f"{column.quantity}, unit not stated"
 
 
-# no quantities of a run, but what a radius makes a friction force and a position of
+# not quantities of a run, but with a radius they give a friction force and a position
 TORQUE: Final = "torque"
 ANGLE: Final = "angle"
 _NO_QUANTITY = {TORQUE: "N m", ANGLE: "rad"}
@@ -166,7 +166,7 @@ _PER = re.compile(r"^(.*\S)\s*(?:/|\bper\b)\s*(\S+)$", re.DOTALL)
 
 
 class Worth(NamedTuple):
-    """A number of a column is ``scale`` times ``unit``, which measures ``name``."""
+    """Calibration: one count of a column is `scale` times `unit`, a unit of the quantity `name`."""
 
     name: str
     unit: str
@@ -174,21 +174,21 @@ class Worth(NamedTuple):
 
 
 def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> Worth:
-    """Interpret a unit, or the calibration of a column.
+    """Return the calibration that a user's text states: a unit, or a factor with a unit.
 
     Parameters
     ----------
     text
-        ``"mN"``, ``"0.5 mN"`` (one count is so much), ``"1/600 turn"`` or ``"8.2 N/V"``.
+        ``"mN"``, ``"0.5 mN"`` (per count), ``"1/600 turn"`` or ``"8.2 N/V"``.
     names
-        Quantities that it may measure, `TORQUE`, or `ANGLE`; the first whose unit it is.
+        Possible quantities, `TORQUE` or `ANGLE`; the first that has such a unit is taken.
     read_unit
         The unit of the column according to the file.
 
     Raises
     ------
     UnitError
-        If it measures none of them.
+        If the unit suits none of them.
 
     Examples
     --------
@@ -212,7 +212,7 @@ def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> W
 
 
 def si_unit_of(name: str) -> str:
-    """SI unit of a quantity, of a torque, or of an angle."""
+    """Return the SI unit of a quantity, of a torque, or of an angle."""
     return _NO_QUANTITY.get(name) or quantity(name).unit
 
 
@@ -227,7 +227,7 @@ def _measured(unit: str, names: Sequence[str]) -> str | None:
 
 
 def _ratio(read_unit: str | None, per: str) -> float:
-    """Return how many of what an amount is stated for one number of the column is."""
+    """Return the factor from the column's unit to the unit `per`, e.g. mV to V; 1 for counts."""
     if not read_unit or not converts(read_unit, per):
         return 1.0  # counts, digits, divisions
     return conversion(read_unit, per)[0]

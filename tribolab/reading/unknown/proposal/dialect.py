@@ -1,4 +1,4 @@
-"""The dialect that reads a file as it was understood."""
+"""Dialect that reads a file according to its interpretation."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
 
-_MAX_SETTINGS = 12  # values that a long preamble states
+_MAX_SETTINGS = 12  # values of a long preamble that are proposed
 
 
 class Described(NamedTuple):
-    """What was understood of a file, as a dialect.
+    """Interpretation of a file in the terms of a dialect.
 
-    `stated` are single values of the file that are used, `proposed` others.
+    `stated` are the single values in the file that the dialect uses, `proposed` the other ones.
     """
 
     layout: Layout
@@ -48,7 +48,7 @@ class Described(NamedTuple):
 
     @property
     def load(self) -> str:
-        """The load that a person stated, if there is no other information."""
+        """The load that the user stated, if the file gives none; else ""."""
         return self.understood.load if self.lacks_load else ""
 
     @property
@@ -62,14 +62,14 @@ class Described(NamedTuple):
 
     @property
     def known(self) -> set[str]:
-        """Quantities of columns that lack only a unit, and quantities that follow."""
+        """Quantities of columns, even if the unit is missing, and derived quantities."""
         columns = self.understood.columns
         known = {c.quantity for c in columns if c.quantity and (c.used or c.fill_in)}
         return known | {formula.quantity for formula in self.follows.formulas}
 
 
 def describe(layout: Layout, understood: Understood) -> Described:
-    """Return the dialect of a file."""
+    """Return the interpretation of a file in the terms of a dialect."""
     follows = what_follows(layout, understood)
     proposed, stated = _values(layout, understood, follows)
     if layout.delimiter == "whitespace":
@@ -87,7 +87,7 @@ def describe(layout: Layout, understood: Understood) -> Described:
 
 
 def dialect_of(name: str, described: Described) -> Dialect:
-    """Return the dialect that reads a file as it was understood.
+    """Return the dialect that reads a file according to its interpretation.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def dialect_of(name: str, described: Described) -> Dialect:
 
 
 def set_keys(model: type[BaseModel], content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that differ from the defaults."""
+    """Return the settings that differ from the defaults of a model."""
     fields = model.model_fields
     return {key: said for key, said in content.items() if said != fields[key].default}
 
@@ -169,7 +169,7 @@ def _recognise(described: Described) -> Mapping[str, Any]:
     if not layout.heading:
         return {"columns": layout.width}
     if layout.held is not None and layout.held.form == "tdms":
-        return {}  # channels of groups are not known by their names alone
+        return {}  # names of TDMS channels do not identify an instrument
     names = (c.name for c in described.columns if c.name and not c.optional)
     return {"header": tuple(dict.fromkeys(names))}
 
@@ -228,7 +228,7 @@ def _time(understood: Understood) -> dict[str, Any]:
     if clocks:
         said["source"] = "period" if understood.period else "column"
     elif understood.rate_pattern:
-        paced = converts(understood.rate_unit, "m/s")  # as fast as a machine moves
+        paced = converts(understood.rate_unit, "m/s")  # e.g. the speed of a crosshead
         said["source"] = "position" if paced else "rate"
         said |= {"rate_pattern": understood.rate_pattern, "rate_unit": understood.rate_unit}
     elif understood.rate:
@@ -252,7 +252,7 @@ def _speed(described: Described) -> Mapping[str, Any]:
 def _values(
     layout: Layout, understood: Understood, follows: Follows
 ) -> tuple[list[Amount], list[Amount]]:
-    """Return the single values that the file states, and those of them that are used."""
+    """Return the single values that the file states, and the values that the dialect uses."""
     used = list(follows.values)
     if understood.kind != "scan":
         return list(numeric_settings(layout)), used
@@ -271,7 +271,7 @@ def _values(
 
 
 def any_blanks(pattern: str) -> str:
-    r"""Return a pattern in which blanks or tabs match any number of them.
+    r"""Return a pattern in which each run of blanks and tabs matches any other such run.
 
     In a table whose cells are separated by blanks, the reader sees one tab for each run of blanks.
 

@@ -1,4 +1,4 @@
-"""Draft a dialect from an unknown raw file: its layout and the quantities of its columns."""
+"""Drafting of a dialect from an unknown raw file: its layout and the quantities of its columns."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
 from tribolab.reading.unknown.proposal.questions import missing_height_unit
 from tribolab.reading.unknown.proposal.show import draft_html
 
-_LISTED = 8  # columns of a table that are named
+_LISTED = 8  # columns of a table that are named in a message
 
 
 class Draft(Drafted):
-    """What was understood of a file, see `Drafted`; a notebook shows it as a table."""
+    """Interpretation of an unknown file, see `Drafted`; a notebook shows it as a table."""
 
     def _repr_html_(self) -> str:
         return draft_html(self)
@@ -49,18 +49,18 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     path
         The file: text, or columns with names (Excel, Parquet, Feather, HDF5, TDMS).
     name
-        Name of the dialect; made from the file's name if not given.
+        Name of the dialect; by default it is made from the file's name.
 
     Returns
     -------
     Draft
         What was understood and guessed, and the dialect as TOML. Columns whose quantity or unit is
-        not known stand in the TOML as comments, ready to be filled in.
+        not known are comments in the TOML, ready to be filled in.
 
     Raises
     ------
     ReadError
-        If the file is missing, not text, or holds no table of numbers.
+        If the file is missing, is of no supported format, or contains no table of numbers.
 
     Notes
     -----
@@ -111,7 +111,7 @@ def _understood(file: File) -> tuple[Layout, Understood]:
     if not file.container:
         layout = find_layout(file)
         return layout, understand(layout)
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.unknown.layout.container_tables import (
         DRAFTED_FROM,
         as_held,
@@ -125,19 +125,19 @@ def _understood(file: File) -> tuple[Layout, Understood]:
             where=file.path,
         )
     layout, columns = layout_of_columns(file)
-    assert layout.held is not None  # a person who describes columns states their positions
+    assert layout.held is not None  # set by `layout_of_columns`
     return layout, as_held(understand(layout), columns, layout.held)
 
 
 def save_draft(draft: Draft, path: PathLike, *, force: bool = False) -> Path:
-    """Write a drafted dialect; an existing file stays as it is unless `force` is given.
+    """Write a drafted dialect to a TOML file; an existing file is replaced only with `force`.
 
     Raises
     ------
     ConfigError
-        If there is such a file already, or its name does not end in ``.toml``.
+        If the file exists already, or its name does not end in ``.toml``.
     OutputError
-        If it cannot be written, or the draft has no dialect.
+        If the file cannot be written, or the draft has no dialect.
     """
     path = Path(path)
     if not draft.toml:
@@ -152,12 +152,12 @@ def save_draft(draft: Draft, path: PathLike, *, force: bool = False) -> Path:
 
 
 def check_target(path: Path, *, force: bool = False) -> None:
-    """Refuse a file that a dialect cannot be written to, before anybody is asked anything.
+    """Raise if a dialect cannot be written to a file, before the user has to answer questions.
 
     Raises
     ------
     ConfigError
-        If there is such a file already, or its name does not end in ``.toml``.
+        If the file exists already, or its name does not end in ``.toml``.
     OutputError
         If no file can have such a name.
     """
@@ -165,7 +165,7 @@ def check_target(path: Path, *, force: bool = False) -> None:
         raise ConfigError(f"{path}: the name of a dialect's file ends in .toml")
     try:
         there = path.exists()
-    except OSError as error:  # a name too long for any file
+    except OSError as error:  # the name is too long
         raise OutputError(f"{path}: cannot be written: {os.strerror(error.errno or 0)}") from error
     if there and not force:
         raise ConfigError(
@@ -174,7 +174,7 @@ def check_target(path: Path, *, force: bool = False) -> None:
 
 
 def dialect_name(text: PathLike) -> str:
-    """Return a name that a dialect may have, made from a file's name.
+    """Return a valid name for a dialect, made from a file's name.
 
     >>> dialect_name("O-ring257_1bar.csv"), dialect_name("Größe 2.txt")
     ('o_ring257_1bar', 'gr_e_2')
@@ -186,12 +186,12 @@ def dialect_name(text: PathLike) -> str:
 def _known(file: File) -> str:
     try:
         return recognise(file.path).name
-    except ReadError:  # none or several
+    except ReadError:  # no instrument fits, or several do
         return ""
 
 
 def _is_heights(draft: Drafted) -> bool:
-    """Whether a table is one column that is named as heights are, without positions."""
+    """Whether a table contains heights without positions: one column, or numbered traces."""
     columns = draft.understood.columns if draft.understood else ()
     if side_by_side(list(columns)) and are_traces(list(columns)):
         return True
@@ -205,14 +205,14 @@ def _is_heights(draft: Drafted) -> bool:
 
 
 def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
-    """Return the draft of heights alone as a profile, whose pitch is known or to be filled in.
+    """Return the draft of heights without positions as that of a profile with a pitch.
 
     Parameters
     ----------
     draft
-        One that is `unsaid`.
+        Draft of a file with heights only, whose `unsaid` is set.
     pitch
-        The distance of neighbouring heights, with its unit.
+        Distance between neighbouring heights, with its unit; "" if it is to be filled in.
     unit
         Unit of the heights; None if the file states it.
     """
@@ -238,15 +238,15 @@ def _as_height(column: DraftColumn, unit: str | None) -> DraftColumn:
 
 
 def _answer(file: File, understood: Understood) -> str:
-    """Return what a table is if it contains neither signals nor a profile."""
-    # late: starting stays quick
+    """Return a description of a table that contains neither signals nor a profile."""
+    # imported late for a quick start
     from tribolab.reading.scans.formats.profilometers import read_foreign
 
     labels = [column.label for column in understood.columns if column.label]
     if not labels:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # what is no scan makes it divide by zero
+                warnings.simplefilter("ignore")  # other tables than scans make it divide by zero
                 scan = read_foreign(file.path)
         except TribolabError:
             return (
@@ -274,7 +274,7 @@ def _results(file: File, name: str) -> Draft:
     start = next((n for n, line in enumerate(lines) if line.startswith("// CalcResult")), 0) + 1
     rows = [line.split(";") for line in lines[start:] if line.strip()]
     if not is_surftest_results(file.head):
-        rows = [list(told) for _, told in named_values(file.head)]
+        rows = [list(row) for _, row in named_values(file.head)]
     return Draft(
         path=file.path,
         name=name,

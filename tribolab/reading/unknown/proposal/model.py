@@ -1,4 +1,4 @@
-"""What was understood of an unknown file, and the dialect that reads it."""
+"""Interpretation of an unknown file, and the dialect drafted from it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SHOWN = 10  # rows shown as understood
 
 @dataclass(frozen=True, eq=False)
 class Drafted:
-    """What was understood of a file.
+    """Interpretation of an unknown file.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Drafted:
     known
         The known instrument that reads the file already; empty if there is none.
     unsaid
-        What a file of heights alone does not say: their distance, or what a count is worth.
+        What a file with heights only does not state: their pitch, or the height of one count.
     """
 
     path: Path
@@ -65,7 +65,7 @@ class Drafted:
 
     @cached_property
     def dialect(self) -> Dialect | None:
-        """The dialect; None for a table, and if no column can be used before its unit is given.
+        """The dialect; None for a table, or if the units of all columns are still missing.
 
         Raises
         ------
@@ -85,12 +85,12 @@ class Drafted:
         return dialect_toml(self.dialect, remarks_of(self._described))
 
     def with_understood(self, understood: Understood) -> Self:
-        """Return the draft of a file that is understood otherwise."""
+        """Return a copy of the draft with another interpretation of the table."""
         return replace(self, kind=understood.kind, understood=understood)
 
     @property
     def labels(self) -> list[str]:
-        """The names of its columns, as the file has them."""
+        """The names of the columns, as written in the file."""
         columns = self.understood.columns if self.understood else ()
         return [column.label for column in columns if column.label]
 
@@ -102,12 +102,12 @@ class Drafted:
             return True
         if self.layout is None or self.understood is None or self.kind != "run":
             return False
-        # what a text states of signals that have numbers for names
+        # columns in formulas, as volts with a stated gain
         return any(c.label for _, c in what_follows(self.layout, self.understood).symbols)
 
     @property
     def guesses(self) -> tuple[str, ...]:
-        """What was guessed, in the order of the file."""
+        """All guesses, from the layout of the file to stated values."""
         if self.layout is None or self.understood is None:
             return ()
         columns = [
@@ -132,7 +132,7 @@ class Drafted:
 
     @property
     def to_fill_in(self) -> Mapping[int, str]:
-        """Lines of the TOML that want to be filled in, and with what."""
+        """What the user has to fill in, by line number of the TOML."""
         return {
             number: line.split(f"{FILL_IN}: ", 1)[1].removesuffix(", then remove the '#' below")
             for number, line in enumerate(self.toml.splitlines(), start=1)
@@ -140,7 +140,7 @@ class Drafted:
         }
 
     def first_rows(self, number: int = SHOWN) -> dict[str, np.ndarray]:
-        """Return the first rows in SI, by quantity."""
+        """Return the first rows of each signal in SI units, by quantity."""
         if self.understood is None:
             return {}
         rows = {}
@@ -153,9 +153,9 @@ class Drafted:
         return rows
 
     def signals(self) -> dict[str, np.ndarray]:
-        """Return all signals in SI, by quantity; of a short run those that follow from others, too.
+        """Return all signals in SI units, by quantity; of a short run also the derived ones.
 
-        They are as the dialect reads them, if it does: a clock that starts anew is joined.
+        If the dialect can read the file, clock restarts are joined, as in any run.
         """
         if self.understood is None:
             return {}
@@ -165,7 +165,7 @@ class Drafted:
             return columns
         try:
             log = read_log(self.path, dialect)
-        except TribolabError:  # something is to be filled in yet
+        except TribolabError:  # something still has to be filled in
             return columns
         read = {"time": log.time, **log.columns}
         return {name: read[name] for name in (*columns, *read) if name in read}

@@ -1,4 +1,4 @@
-"""What a file of an unknown instrument leaves open: guesses, and what else may be meant."""
+"""Open questions about a file of an unknown instrument: guesses, and their alternatives."""
 
 from __future__ import annotations
 
@@ -34,26 +34,26 @@ _UNSAID = {
 _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
 _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
-_TOLD = 12  # questions of one file that are listed in a line
-_LINES = 3  # of five, for what is unclear or missing
+_IN_LINE = 12  # questions about one file that are listed in one line
+_LINES = 3  # lines of an error message (of five) for what is unclear or missing
 _LISTED = 6  # columns that are listed as understood
 _UNKNOWN = "the instrument is not known, and the file does not state everything"
-_MAX_BESIDE = 50  # descriptions in the file's folder that are looked at
+_MAX_DRAFTS = 50  # TOML files in the file's folder that are inspected
 _RADII = ("another length",)
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
 
 
 class Question(NamedTuple):
-    """One open point of a file: its subject, the guess and the alternatives."""
+    """Open question about a file: its subject, the guess and the alternatives."""
 
     about: str
     guess: str
     options: tuple[str, ...] = ()
-    is_open: bool = False  # nothing is guessed: one of the options is wanted
+    is_open: bool = False  # there is no guess: the user has to choose an option
 
     @property
     def line(self) -> str:
-        """All of it in a line."""
+        """The question with its alternatives in one line."""
         if self.is_open and self.options:
             *first, last = self.options
             choice = f"{', '.join(first)} or {last}" if first else last
@@ -63,7 +63,7 @@ class Question(NamedTuple):
 
 
 def questions(draft: Drafted) -> list[Question]:
-    """Return what was guessed or is missing in a file; empty if its header is complete."""
+    """Return the questions about guesses and missing inputs; empty if the header is complete."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return []
@@ -91,14 +91,14 @@ def questions(draft: Drafted) -> list[Question]:
     moves = bool(held & {"sliding_velocity", "position"}) and "time" in held
     for column in understood.columns:
         if moves and column.quantity == "rotation_speed" and column.fill_in:
-            continue  # the motion is known without it
+            continue  # the motion is known without the rotation speed
         if column.guessed or column.fill_in:
             asked.append(_of_column(layout, column))
     return asked
 
 
 def _of_texts(understood: Understood) -> list[Question]:
-    """Ask about text in place of numbers, so that none is dropped silently."""
+    """Return questions about text in place of numbers, so that no value is dropped silently."""
     asked = []
     held = {column.quantity for column in understood.columns if column.used}
     for column in understood.columns:
@@ -112,7 +112,7 @@ def _of_texts(understood: Understood) -> list[Question]:
 
 
 def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
-    """Ask what drives the motion, and for the friction where a column of unknown name may be it."""
+    """Return questions about speed, zero and radius, and about the column of the friction."""
     asked = []
     if follows.speed is not None and follows.speed.guess:
         asked.append(Question("speed", follows.speed.guess, follows.speed.options))
@@ -125,7 +125,7 @@ def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
     unknown = unknown_of(understood.columns)
     torque = torque_of(understood.columns) is not None
     if understood.kind == "run" and unknown and not torque and not names & _OF_FRICTION:
-        options = tuple(f"column {c.place} '{shown(c.label, 30)}'" for c in unknown[:_TOLD])
+        options = tuple(f"column {c.place} '{shown(c.label, 30)}'" for c in unknown[:_IN_LINE])
         asked.append(Question("friction", "no column is known to hold it", options, is_open=True))
     return asked
 
@@ -143,22 +143,23 @@ def _of_column(layout: Layout, column: DraftColumn) -> Question:
 
 
 def lacks_friction(draft: Drafted) -> bool:
-    """Whether a run contains a torque without a radius, and no other friction signal."""
+    """Whether friction cannot be computed, e.g. from a torque without a radius."""
     lacks = (lack for lack in _lacks(draft) if lack.member != "friction_force")
     return any("friction" in lack.goals for lack in lacks)
 
 
 def missing_words(draft: Drafted, *, by_option: bool = False) -> list[str]:
-    """Return what is missing for a friction coefficient over speed.
+    """Return in words what is missing for the coefficient of friction against speed.
 
-    Without how a file states it where an option of the command line does, if it is `by_option`.
+    The words include how to state each input in a file; with `by_option`, inputs that have a
+    command-line option are named only.
     """
     lacks = _lacks(draft)
     unused = [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
     if draft.layout is None or draft.understood is None:
         return [str(lack) for lack in lacks] + unused
     follows = what_follows(draft.layout, draft.understood)
-    told = [
+    lines = [
         (str(lack), calibration_lines(draft.layout))
         if isinstance(lack, Uncalibrated)
         else (
@@ -167,18 +168,18 @@ def missing_words(draft: Drafted, *, by_option: bool = False) -> list[str]:
         )
         for lack in lacks
     ]
-    return [lack + (f"; is it {line}?" if line else "") for lack, line in told] + unused
+    return [lack + (f"; is it {line}?" if line else "") for lack, line in lines] + unused
 
 
 def without_unit_and_missed(draft: Drafted) -> list[str]:
-    """Return lines that may state a missing value but have no unit: 'Stroke=12'."""
+    """Return lines that may state a missing input, but without a unit: 'Stroke=12'."""
     return _unused(draft, _lacks(draft))
 
 
 def missing_options(draft: Drafted, asked: Sequence[Question]) -> list[str]:
-    """Return the options of the command line that state all that a file lacks, with examples.
+    """Return the command-line options that state everything a file lacks, with examples.
 
-    None where they do not: with a question that is open, or without friction.
+    The list is empty if options cannot state everything, or if a question has no guess.
     """
     lacks = _lacks(draft)
     options = [lack.option for lack in lacks if isinstance(lack, MissingInput) and lack.option]
@@ -198,16 +199,16 @@ def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
 
 
 def missing_height_unit(draft: Drafted) -> str:
-    """Return what heights alone leave open, with the lines that are not clear enough."""
+    """Return what is missing to read heights without positions, with lines that may state it."""
     lines = lines_without_unit(draft.layout, bare=True) if draft.layout else []
     said = ", ".join(f"'{shown(line, 40)}'" for line in lines if draft.unsaid == "pitch")
     return _UNSAID[draft.unsaid] + (f"; {said} has no unit" if said else "")
 
 
 class GuessedError(ReadError):
-    """A file could be read only by guessing: at most five lines list the open points.
+    """Error: a file could be read only by guessing. At most five lines list the open questions.
 
-    In a campaign everything is in one line.
+    In a campaign, the message is one line.
     """
 
     def __init__(
@@ -235,10 +236,10 @@ class GuessedError(ReadError):
         unclear = [f"Unclear: {question.line}" for question in self.asked]
         lacks = (self.by_option or self.lacks) if audience == "terminal" else self.lacks
         missing = [f"Missing: {lack}" for lack in lacks]
-        told = f"Understood: {', '.join(self.understood) or 'nothing yet'}"
+        known = f"Understood: {', '.join(self.understood) or 'nothing yet'}"
         if audience == "campaign":
-            lines = [question.line for question in self.asked[:_TOLD]]
-            lines += _and_more(len(self.asked) - _TOLD)
+            lines = [question.line for question in self.asked[:_IN_LINE]]
+            lines += _and_more(len(self.asked) - _IN_LINE)
             said = [f"unclear: {'; '.join(lines)}"] if lines else []
             said += [f"missing: {'; '.join(self.lacks)}"] if self.lacks else []
             return "; ".join([f"{self.where}: {self.what}", *said, cure])
@@ -249,7 +250,7 @@ class GuessedError(ReadError):
         lines = [*first, *missing[: _LINES - len(first)]]
         more = " ".join(_and_more(len(unclear) + len(missing) - len(lines)))
         lines[-1:] = [f"{line} ({more})" if more else line for line in lines[-1:]]
-        return "\n".join([f"{self.where}: {self.what}. {told}", *lines, *(kept or [cure])])
+        return "\n".join([f"{self.where}: {self.what}. {known}", *lines, *(kept or [cure])])
 
 
 def _and_more(count: int) -> list[str]:
@@ -257,7 +258,7 @@ def _and_more(count: int) -> list[str]:
 
 
 def understood_columns(draft: Drafted) -> list[str]:
-    """Return the columns that are understood: quantity, name in the file, unit."""
+    """Return a text for each column without doubt: quantity, name in the file, unit."""
     said = []
     for column in draft.understood.columns if draft.understood else ():
         if column.used and column.quantity and not column.guessed:
@@ -271,22 +272,22 @@ def understood_columns(draft: Drafted) -> list[str]:
 
 
 def _drafts_of(path: object) -> list[str]:
-    """Return the names of dialects in the file's folder that were drafted from it."""
+    """Return the first dialect in the file's folder that was drafted from the file, as a list."""
     file = Path(str(path))
     first = f"# Drafted from '{file.name}'."
     found = []
-    for beside in sorted(file.parent.glob("*.toml"))[:_MAX_BESIDE]:
+    for draft in sorted(file.parent.glob("*.toml"))[:_MAX_DRAFTS]:
         try:
-            check_regular(beside)
-            with beside.open(encoding="utf-8") as text:
-                found += [str(beside)] if text.readline().startswith(first) else []
+            check_regular(draft)
+            with draft.open(encoding="utf-8") as text:
+                found += [str(draft)] if text.readline().startswith(first) else []
         except (OSError, ValueError, ReadError):
             continue
     return found[:1]
 
 
 def how_to_keep(path: Path | str) -> str:
-    """Return the command that writes down what is drafted from a file, by its name or as given.
+    """Return the command that saves the dialect drafted from a file.
 
     >>> how_to_keep(Path("raw/odd one.csv"))
     "tribolab info 'odd one.csv' --write my.toml"

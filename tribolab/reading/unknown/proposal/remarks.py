@@ -1,4 +1,4 @@
-"""Comments of a drafted dialect: what was guessed, is unused, or is missing."""
+"""Comments in a drafted dialect: guesses, unused columns and values, and missing inputs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _ON_REPEAT = {
 
 
 def remarks_of(described: Described) -> Remarks:
-    """Return the comments of a drafted dialect."""
+    """Return the comments of a drafted dialect, by the place where they are written."""
     layout, understood, follows, stated, _ = described
     read = [*described.columns, *(column for _, column in follows.symbols)]
     above = {f"column.{n}": _about_column(c) for n, c in enumerate(read)}
@@ -106,7 +106,7 @@ def _sample_rate(described: Described) -> tuple[str, ...]:
 
 
 def _rotation(described: Described) -> tuple[str, ...]:
-    """Propose rules for a speed that is still unknown."""
+    """Return proposed settings, as comments, for a speed that is still unknown."""
     understood = described.understood
     names = {column.quantity for column in understood.columns if column.used}
     if described.follows.speed is not None or understood.kind != "run":
@@ -130,13 +130,13 @@ def _about_column(column: DraftColumn) -> tuple[str, ...]:
 
 
 def _columns_not_read(described: Described) -> list[str]:
-    """Return columns that nothing reads as comments; the empty ones among them in one line."""
+    """Return comments on the columns that are not used; empty columns share one line."""
     understood, numbers = described.understood, described.understood.numbers
     waiting = [column for column in understood.columns if column.fill_in]
     parts = [_proposed(column, numbers) for column in waiting]
     taken = {column.place for _, column in described.follows.symbols}
     torque = torque_of(understood.columns) if understood.kind == "run" else None
-    taken |= {torque.place} if torque is not None else set()  # proposed for a formula
+    taken |= {torque.place} if torque is not None else set()  # `_missing_formulas` proposes it
     rest = [c for c in understood.columns if not (c.used or c.fill_in or c.place in taken)]
     filled = np.isfinite(numbers).any(axis=0)
     empty = [c for c in rest if not (c.label or filled[c.place - 1] or c.note)]
@@ -154,7 +154,7 @@ def _columns_not_read(described: Described) -> list[str]:
 
 
 def _proposed(column: DraftColumn, numbers: np.ndarray) -> str:
-    """Return a column that is not read as a comment, ready to be filled in."""
+    """Return the [[column]] entry of an unused column as a comment, ready to be filled in."""
     if column.fill_in:
         about = [f"{FILL_IN}: {column.fill_in}, {_REMOVE}"]
         about += [f"guessed: {guess}" for guess in column.guessed]
@@ -188,7 +188,7 @@ def _values_not_used(described: Described) -> list[str]:
 
 
 def _missing_formulas(described: Described) -> list[str]:
-    """Return, as comments to be filled in, what a friction coefficient still needs."""
+    """Return entries, as comments, that a coefficient of friction still needs."""
     understood = described.understood
     torque = torque_of(understood.columns) if understood.kind == "run" else None
     parts = []

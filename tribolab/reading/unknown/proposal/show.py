@@ -1,4 +1,4 @@
-"""Show on the terminal how an unknown file was understood, and what to do next."""
+"""Display of the interpretation of an unknown file, on the terminal or in a notebook."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
 from tribolab.units.quantities import quantity
 
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
-_COLUMNS = 12  # of raw cells that are shown side by side
-_ABREAST = 5  # quantities side by side
-_LISTED = 60  # columns that are not used and shown all the same
+_COLUMNS = 12  # columns of raw cells that are shown
+_ABREAST = 5  # quantities that are shown side by side
+_LISTED = 60  # columns that are listed; further ones only if their quantity is known
 
 
 def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
-    """Print what was understood of a file, its first rows, and what was guessed."""
+    """Print the interpretation of a file, its first rows, and the guesses."""
     kinds = {"run": "a run", "scan": "a scan", "table": "a table, neither a run nor a scan"}
     console.print(f"[bold]{escape(str(draft.path))}[/]: {kinds[draft.kind]}")
     for line in _written(draft):
@@ -46,7 +46,7 @@ def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
 
 
 def print_signals(draft: Drafted, console: Console, *, rows: bool = True) -> None:
-    """Print the first rows in SI as they were understood, and the range of each signal."""
+    """Print the first rows in SI units, and the range of each signal."""
     signals = draft.signals()
     for table in _rows_tables(signals) if rows else ():
         console.print(table)
@@ -61,7 +61,7 @@ def print_signals(draft: Drafted, console: Console, *, rows: bool = True) -> Non
 
 
 def draft_html(draft: Drafted) -> str:
-    """Return what `print_draft` prints, and what is to be filled in, for a notebook."""
+    """Return the output of `print_draft` as HTML, with a list of what is to be filled in."""
     page = Console(record=True, file=io.StringIO(), width=110, force_jupyter=False, highlight=False)
     print_draft(draft, page)
     for line, what in draft.to_fill_in.items():
@@ -70,7 +70,7 @@ def draft_html(draft: Drafted) -> str:
 
 
 def print_next(draft: Drafted, written: Path, console: Console) -> None:
-    """Print where the dialect was written, which lines to fill in, and the command to type next."""
+    """Print which lines to fill in, where the dialect was written, and the next command."""
     for line, what in draft.to_fill_in.items():
         console.print(f"fill in {escape(str(written))} line {line}: {escape(what)}", soft_wrap=True)
     console.print(f"written: {escape(str(written))}", soft_wrap=True)
@@ -117,7 +117,7 @@ def _table(*headings: str) -> Table:
 
 
 def _columns_table(draft: Drafted) -> Table:
-    """One row per column; the unnamed and empty ones are left out."""
+    """Return a table with one row per column; columns without name and numbers are left out."""
     table = _table("column", "name in the file", "unit", "quantity", "remark")
     if draft.understood is None:
         return table
@@ -145,13 +145,13 @@ def _columns_table(draft: Drafted) -> Table:
 def _remark(column: DraftColumn, used_as: str) -> str:
     if used_as:
         return f"used as {used_as}"
-    if column.used or column.zero:  # of a torque that makes the force, too
+    if column.used or column.zero:  # `zero`: also a torque that gives the friction force
         return "guessed" if column.guessed else column.note
     return f"fill in {column.fill_in}" if column.fill_in else f"not used: {column.note}"
 
 
 def _rows_tables(signals: Mapping[str, np.ndarray]) -> list[Table]:
-    """First rows in SI, a column for each quantity; a handful of them side by side."""
+    """Return tables of the first rows in SI units, with at most five quantities each."""
     rows = {name: values[:SHOWN] for name, values in signals.items()}
     names = list(rows)
     tables = []
@@ -173,7 +173,7 @@ def _with_unit(name: str) -> str:
 
 
 def _cells_table(draft: Drafted) -> Table:
-    """Return the first rows as written in the file, below its header if there is one."""
+    """Return a table of the first rows as written in the file, with its header if it has one."""
     width = min(max((len(row) for row in draft.cells), default=0), _COLUMNS)
     heading = draft.layout.heading if draft.layout else None
     cells = list(heading.cells if heading else ()) + [""] * width
