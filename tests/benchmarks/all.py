@@ -72,8 +72,8 @@ def main() -> None:
         scripts = [script for script in scripts if script.stem not in LONG]
     parts = [
         "# Benchmarks\n",
-        "Written by `python tests/benchmarks/all.py`. Each benchmark alternates between tribolab "
-        "and its peer in one call; times of other machines differ, ratios hardly.\n",
+        "Written by `python tests/benchmarks/all.py`. Each benchmark runs tribolab and its peer (a "
+        "reference computation) in turn. Times depend on the machine; ratios hardly do.\n",
         f"{processor()}; Python {platform.python_version()}; {versions()}\n",
         "| job | tribolab | peer | peer's | ratio | goal |\n|---|---|---|---|---|---|",
     ]
