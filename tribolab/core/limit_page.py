@@ -11,10 +11,10 @@ LIMITS_PAGE = "LIMITS.md"
 _PIPE = r"\|"
 _HEAD = """# The limits
 
-Every number that decides a result, by room of the package, with its reason and what it was
-calibrated on: a script and its seeds, a standard, a paper, or judgement. They are constants of the
-code; the limits of checks, which a campaign file can change, are in [CHECKS.md](CHECKS.md). This
-page is made from the code, and a test keeps the two equal.
+Every number that decides a result, by subpackage, with its reason and its source: a script and its
+seeds, a standard, a paper, or judgement. These limits are constants of the code. A campaign file
+can change only the limits of checks, which are in [CHECKS.md](CHECKS.md). This page is generated
+from the code.
 """
 
 

@@ -18,7 +18,7 @@ class Contacts(Contact):
     """The cylinder or ball and the elastomer, as far as they are known.
 
     A table `[contact.NAME]` has the same keys for the runs with `contact = "NAME"`: a series of
-    elastomers, several balls. What it leaves out is as in `[contact]`.
+    elastomers, several balls. Keys that it omits are taken from `[contact]`.
     """
 
     model_config = ConfigDict(extra="allow")

@@ -13,8 +13,8 @@ from tribolab.units.reciprocals import reciprocal
 CAMPAIGN_PAGE = "CAMPAIGN.md"
 _HEAD = """# The campaign file
 
-All tables and keys of a campaign file. A quantity is text with any unit that converts to the one
-listed here: `"31 N"`, `"6 mm/min"`, `"20 °C"`. Defaults are in the listed unit. A key that is not
+All tables and keys of a campaign file. Write a quantity as text, with any unit that converts to the
+listed one: `"31 N"`, `"6 mm/min"`, `"20 °C"`. Defaults are in the listed unit. A key that is not
 listed is an error. `campaign.schema.json` contains the same for editors. At the end:
 [quantities of columns](#quantities-of-columns) and
 [values in a header or file name](#values-in-a-header-or-file-name). This page is generated from the
@@ -186,14 +186,15 @@ def _quantities(names: Iterable[str]) -> list[str]:
 
 
 def _meaning(known: Quantity) -> str:
-    """Meaning of a quantity, and what a unit that does not say so counts."""
-    if known.bare is None:
+    """Meaning of a quantity, and whether a unit such as 1/s counts cycles."""
+    if known.bare is None or known.unit == "1":
         return known.long_name
     if known.bare == "ask":
         return f"{known.long_name}; the unit must state whether it counts cycles or radians"
     inverse = reciprocal(known.unit)
     bare = f"1/{inverse.per if inverse else 's'}"
-    return f"{known.long_name}; a bare {bare} counts {known.bare}"
+    counted = "does not count cycles" if known.bare == "nothing" else f"counts {known.bare}"
+    return f"{known.long_name}; `{bare}` {counted}"
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:

@@ -54,7 +54,7 @@ class Model(Table):
     """Surfaces to fit together; in one liquid they share its viscosity."""
     dry_medium: SomeText | None = None
     """Medium without liquid whose friction constrains the shear stress in the joint fit. The works
-    of adhesion and their ranges determine its larger contact area."""
+    of adhesion and their ranges determine the larger dry contact area."""
     uncertainty: Literal["lowest load", "all", "none"] = "lowest load"
     """Loads of a surface for which the model uncertainty is computed."""
 

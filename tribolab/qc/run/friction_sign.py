@@ -149,8 +149,8 @@ FRICTION_SIGN = Check(
         "of_load": Limit(
             0.5,
             "1",
-            "relative scatter of the load divided by that of friction, above which the "
-            "load causes it: cross-talk of stick-slip into the load is far smaller",
+            "relative scatter of the load divided by that of friction; above it, the load causes "
+            "the scatter of friction, as cross-talk of stick-slip into the load is far smaller",
         ),  # fmt: skip
     },
     _sign,

@@ -175,7 +175,7 @@ READING_CHECKS = (
         "rows_left_out",
         25,
         "Was every row of the file read?",
-        "State in the dialect how to keep them (restart, on_repeat, end).",
+        "State in the dialect how to keep all rows (restart, on_repeat, end).",
         {
             "suspect": Limit(
                 0.01, "1", "one incomplete row or a few repeated time stamps are no loss"

@@ -208,7 +208,7 @@ INSTRUMENT_CHECKS = (
         "results",
         9,
         "Do the Ra and Rq of the instrument agree with the profile?",
-        "Check units, filter and whether they belong to this profile. If values are "
+        "Check units, filter and whether Ra and Rq belong to this profile. If values are "
         "missing, make a longer or cleaner scan.",
         {
             "suspect": Limit(0.1, "1", "end effects of filter and form cause up to 10 %"),

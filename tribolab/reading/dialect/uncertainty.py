@@ -65,7 +65,7 @@ class StatedUncertainty(Strict):
     varies: Varies | None = Field(
         None,
         description="What changes its value. Contributions that vary with run or mount are not "
-        "added again if repeats include them. Default: usual for the name.",
+        "added again if repeats include them. Default: by NAME.",
     )
     source: str | None = Field(
         None, description="Source of the value: certificate, data sheet, date."
