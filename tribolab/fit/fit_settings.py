@@ -31,14 +31,14 @@ class FitSettings:
         The computed curve, if available: `stribeck_curve` of the same system at the measured speeds
         (and others), with ``"0 Pa"``.
     area_enhancement, area_enhancement_error
-        Real contact area with adhesion over that without [1], and its standard error.
+        Ratio [1] of the real contact area with adhesion to that without, and its standard error.
     common_error, common_freedom
         Relative standard error [1] that all measured points share, such as the repeatability of a
         run's level over the square root of the number of runs, and its degrees of freedom.
     spectrum_error
         Relative changes [1] of sigma_f, down and up, due to an uncertain spectrum, from
-        `shear_stress_shift`. For a measured spectrum (with ``psd_2d_low``), only a statistical
-        interval is given without it.
+        `shear_stress_shift`. Without it, a fit with a measured spectrum (one with ``psd_2d_low``)
+        has only a statistical interval.
     abscissa_error
         Relative standard uncertainty [1] of viscosity times speed, constant along the curve; not
         used with a free viscosity, which includes it.
@@ -85,7 +85,7 @@ SETTINGS = {field.name for field in fields(FitSettings)}
 def merge_old_settings(
     settings: FitSettings | None, options: Mapping[str, Any]
 ) -> tuple[FitSettings, dict[str, Any]]:
-    """Return the settings, including arguments of the last release, and all other arguments."""
+    """Return settings updated by arguments that are now settings, and the other arguments."""
     old = {name: value for name, value in options.items() if name in SETTINGS}
     if old:
         warnings.warn(

@@ -1,4 +1,4 @@
-"""Measured points that a fit uses, and how its residuals vary with speed."""
+"""Measured points that a fit uses, and tests of its residuals along the speeds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.units.conversion import to_si
 
 
 def runs_p_value(residual: np.ndarray) -> float:
-    """Return the probability of at most so many sign changes if the signs are in random order.
+    """Return the p-value of the runs test: few sign changes of the residuals give a small value.
 
     Examples
     --------
@@ -24,7 +24,7 @@ def runs_p_value(residual: np.ndarray) -> float:
     sign = residual[residual != 0] > 0
     plus, minus = int(sign.sum()), int((~sign).sum())
     if plus == 0 or minus == 0:
-        return 1.0  # residuals of one sign have only one order
+        return 1.0  # residuals of one sign cannot change sign
     seen = 1 + int(np.count_nonzero(sign[1:] != sign[:-1]))
     ways = 0.0
     for runs in range(2, seen + 1):

@@ -34,7 +34,7 @@ def model_inputs(
     errors: Mapping[str, float],
     **model: Any,
 ) -> xr.Dataset:
-    """Return the change of a computed curve by one standard uncertainty of each model input.
+    """Return the change of a computed curve due to one standard uncertainty of each model input.
 
     Parameters
     ----------
@@ -52,20 +52,18 @@ def model_inputs(
     -------
     xarray.Dataset
         Signed changes over ``model_input`` and ``sliding_speed``: ``fluid_part`` [1] of the fluid
-        friction; ``solid_part`` [1/Pa] of the factor of the shear stress, and ``solid_part_other``
-        of this factor by the other theory of the contact area.
+        friction; ``solid_part`` [1/Pa] of the friction per shear stress, and ``solid_part_other``
+        the same by the other theory of the contact area.
 
     Raises
     ------
     AnalysisError
         If an input is not known, or its uncertainty is negative or too large to be linear.
 
-    Notes
-    -----
-    Central differences over 4 % of each input, two curves for each. Measured friction is constant:
-    it is the ratio of recorded forces, independent of the load in the model. If all forces grow
-    alike nothing changes: ``d mu/d ln(viscosity v) + d mu/d ln(load) + d mu/d ln(modulus) + sigma_f
-    d mu/d sigma_f = 0``.
+    Notes ----- Changes are central differences, from two curves for inputs that differ by 4 %. They
+    do not affect the measured friction, which is a ratio of recorded forces. If all forces increase
+    by the same factor, nothing changes: ``d mu/d ln(viscosity v) + d mu/d ln(load) + d mu/d
+    ln(modulus) + sigma_f d mu/d sigma_f = 0``.
 
     Examples
     --------
@@ -115,7 +113,7 @@ def model_inputs(
 
 
 def _columns(above: xr.Dataset, below: xr.Dataset) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return fluid friction and contact areas by both theories, for both values of an input."""
+    """Return fluid friction and both theories' solid friction per shear stress, above and below."""
     names = (_SOLID, f"{_SOLID}_other")
     fluid = [end[_PARTS[0]].values + end[_PARTS[1]].values for end in (above, below)]
     return [(fluid[0], fluid[1]), *((above[n].values, below[n].values) for n in names)]
@@ -131,9 +129,9 @@ def moved_friction(inputs: xr.Dataset, shear_stress: float, speed: np.ndarray) -
     shear_stress
         sigma_f [Pa].
     speed
-        Speeds [m/s]; `inputs` are interpolated over their logarithm.
+        Speeds [m/s]; the changes are interpolated linearly in ln(speed).
     """
-    place = np.log(inputs["sliding_speed"].values)
+    log_speed = np.log(inputs["sliding_speed"].values)
     rows = inputs["fluid_part"].values + shear_stress * inputs["solid_part"].values
-    moved = [np.interp(np.log(speed), place, row) for row in rows]
+    moved = [np.interp(np.log(speed), log_speed, row) for row in rows]
     return np.array(moved).reshape(len(moved), speed.size)

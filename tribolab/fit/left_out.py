@@ -36,7 +36,7 @@ def effects_not_modelled(
     contact, load, psd
         The contact, its load [N/m; N for a ball] and the spectrum; None for smooth surfaces.
     viscosity
-        Viscosity at rest [Pa s].
+        Zero-shear viscosity [Pa s].
 
     Examples
     --------

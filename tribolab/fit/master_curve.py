@@ -15,7 +15,7 @@ _SPLINE_COEFFICIENTS = 14  # with seven coefficients the test is insensitive
 
 
 class Collapse(NamedTuple):
-    """F-test of one common curve against a separate level and slope for each liquid.
+    """Result of an F-test: one common curve, or a separate level and slope for each liquid.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Collapse(NamedTuple):
     level, slope
         ln mu, and d ln mu/d ln(eta v), of each liquid relative to the first.
     abscissa, fitted
-        eta v [N/m], rising, and the common curve there [1].
+        Increasing eta v [N/m], and the friction coefficient [1] of the common curve there.
     """
 
     statistic: float
@@ -77,7 +77,7 @@ def collapse_test(
 
     Notes
     -----
-    A cubic spline of ln mu over ln(eta v) with 14 coefficients is compared with the same spline
+    A cubic spline with 14 coefficients for ln mu against ln(eta v) is compared with the same spline
     plus a level and a slope for each liquid except the first. Both are fitted by generalised least
     squares, with the noise of the points and the errors of level and viscosity (times the slope of
     the curve). For Newtonian liquids at one load the curve is exactly common. A shear stress that

@@ -62,26 +62,27 @@ def model_uncertainty(
         Sliding speeds [m/s] (sliding_speed), above zero; by default 17 from 1 nm/s to 0.1 m/s. With
         a slide-roll ratio they are the speeds named by `Interface.abscissa`.
     unknowns
-        `Unknowns`; None treats stated inputs as exact, except a vented outlet.
+        `Unknowns`; None treats the given inputs as exact, but a vented outlet as possibly flooded.
     refit
-        Use for each varied curve the sigma_f that fits the given curve best: the band of a model
-        whose sigma_f is fitted to a measured curve.
+        Whether sigma_f of each varied curve is refitted to the given curve, as for a model whose
+        sigma_f was fitted to a measured curve.
     **options
-        Single fields of these objects, as they were arguments in the last release.
+        Single fields of `Liquid`, `Interface`, `Solver` and `Unknowns`: arguments of the last
+        release.
 
     Returns
     -------
     xarray.Dataset
         ``friction_coefficient`` with ``_low`` and ``_high`` over ``sliding_speed``. Over
-        ``variation`` (its name): ``variation_low``, ``variation_high`` (text: the ends of the
-        range; empty for a one-sided range), ``variation_reason``; ``largest_change`` [1], the
-        largest change of mu relative to the maximum of the curve, at ``largest_change_speed``
+        ``variation`` (name of the unknown): ``variation_low``, ``variation_high`` (ends of the
+        range as text; empty for a one-sided range), ``variation_reason``; ``largest_change`` [1],
+        the largest change of mu relative to the maximum of the curve, at ``largest_change_speed``
         [m/s]; ``largest_relative_change`` [1] of mu at one speed, at
         ``largest_relative_change_speed``; ``shear_stress_change_low``, ``shear_stress_change_high``
         [1], relative change of sigma_f with which each end fits the given curve. The curves
         themselves are ``friction_coefficient_varied`` (variation, range_end, sliding_speed), NaN
         for a missing end. The attribute ``not_varied`` lists unknowns that were not varied, with
-        reasons, ``not_in_model`` effects that are left out, with their size; ``validity`` and
+        reasons, ``not_in_model`` neglected effects with their size; ``validity`` and
         ``validity_reasons`` also name variations beyond the theory's limits.
 
     Raises
@@ -121,7 +122,7 @@ def model_uncertainty(
     """
     warn_of_old("model_uncertainty", options)
     known, single = merge_old_options(unknowns, options)
-    if psd is not None:  # roughness of a smooth surface cannot be varied
+    if psd is not None:  # wavenumbers without roughness cannot be varied
         rough = rough_band(psd)[0]
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
     force = positive(load, contact.load_unit, "load")
@@ -186,7 +187,7 @@ def model_uncertainty(
 
 
 class _Given(NamedTuple):
-    """Model with load and speeds, in SI."""
+    """Arguments of `solve_curve` in SI."""
 
     contact: Contact
     psd: xr.Dataset | None
@@ -208,7 +209,7 @@ class _Given(NamedTuple):
 def _base(
     contact: Contact, psd: xr.Dataset | None, load: float, parameters: Parameters, known: Unknowns
 ) -> Base:
-    """Return the model that is varied, with all ranges in SI."""
+    """Return the unvaried model, with the ranges of its inputs in SI."""
     liquid, interface, solver = parameters
     work = interface.work_of_adhesion
     return Base(
@@ -239,7 +240,7 @@ def _base(
 def _all_ends(
     coarse: _Given, varied: list[Variation], start: SolvedCurve, refit: bool
 ) -> tuple[np.ndarray, np.ndarray, list[dict[str, str]]]:
-    """Return friction (variation, end, speed), change of sigma_f, and validity; NaN if missing."""
+    """Return friction, change of sigma_f and validity warnings at both ends of each variation."""
     reference = start.curve
     stress = coarse.parameters.interface.shear_stress
     aim = reference["friction_coefficient"].values

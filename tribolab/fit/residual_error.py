@@ -34,7 +34,7 @@ class ResidualError(NamedTuple):
     correlation
         Estimated correlation of the errors of neighbouring points [1].
     growth
-        Estimated factor on the points' errors [1].
+        Estimated factor [1] by which the points' errors are too small.
     """
 
     error: float
@@ -47,7 +47,7 @@ def residual_error(
     residual: np.ndarray,
     jacobian: np.ndarray,
     error: np.ndarray,
-    place: np.ndarray,
+    position: np.ndarray,
     known: bool = True,
 ) -> ResidualError:
     """Return the error of a weighted least-squares fit whose residuals may be correlated.
@@ -60,15 +60,16 @@ def residual_error(
         Derivatives of the fitted values by the parameters (point, parameter).
     error
         Standard errors of the points (point).
-    place
-        Increasing positions of the points (point); the median spacing is that of neighbours.
+    position
+        Increasing positions of the points, e.g. ln v (point).
     known
-        Whether the size of `error` is known; else only ratios are used.
+        Whether the size of `error` is known; else only the ratios of the errors are used.
 
     Notes
     -----
-    Covariance of the points ``s^2 e_i e_j rho^(|x_i - x_j|/d)``, with d the median spacing, on a
-    grid of rho and s >= 1 (any s if the errors are unknown). The grid points are weighted by their
+    The covariance of the points is ``s^2 e_i e_j rho^(|x_i - x_j|/d)``, with d the median spacing,
+    on a grid of rho and s >= 1 (any s if the errors are unknown). The grid points are weighted by
+    their
     restricted likelihood, ``|V|^-1/2 |J' V^-1 J|^-1/2 exp(-r' Q r/2)``, times their prior. The
     estimate is that with the points' own weights; its standard error under each V is averaged. For
     s = 1 the errors are known and the normal quantile is used, else Student's t.
@@ -76,23 +77,23 @@ def residual_error(
     Examples
     --------
     >>> rng = np.random.default_rng(1)
-    >>> ones, place = np.ones((40, 1)), np.arange(40.0)
-    >>> alone = residual_error(rng.standard_normal(40), ones, np.ones(40), place)
-    >>> slow = np.sin(place / 8)
-    >>> together = residual_error(slow - slow.mean(), ones, np.ones(40), place)
+    >>> ones, x = np.ones((40, 1)), np.arange(40.0)
+    >>> alone = residual_error(rng.standard_normal(40), ones, np.ones(40), x)
+    >>> slow = np.sin(x / 8)
+    >>> together = residual_error(slow - slow.mean(), ones, np.ones(40), x)
     >>> alone.correlation < 0.2, together.correlation > 0.6, together.error > 2 * alone.error
     (True, True, True)
     """
     scaled, jac = residual / error, jacobian / error[:, None]
     size = np.linalg.norm(jac, axis=0)
     jac = jac / size  # scaled columns give a well conditioned matrix
-    apart = np.abs(place[:, None] - place)
+    apart = np.abs(position[:, None] - position)
     freedom = residual.size - jac.shape[1]
     growth = _GROWTH_GRID if known else np.concatenate([1 / _GROWTH_GRID[:0:-1], _GROWTH_GRID])
     prior = _prior(growth, known)
     weights = np.linalg.pinv(jac)[0]
     evidence, variance = np.empty(prior.shape), np.empty(_CORRELATION_GRID.size)
-    spacing = float(np.median(np.diff(place))) or 1.0
+    spacing = float(np.median(np.diff(position))) or 1.0
     for i, rho in enumerate(_CORRELATION_GRID):
         together = np.eye(residual.size) if rho == 0 else rho ** (apart / spacing)
         lower = np.linalg.cholesky(together)

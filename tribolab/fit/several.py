@@ -33,10 +33,10 @@ class ShearStressFits(Conditions[ShearStressFit]):
         """Return all numbers of `ShearStressFit.to_dataframe` for each condition, with units."""
         tables = np.empty(self.results.shape, dtype=object)
         about: dict[str, tuple[str, str]] = {}
-        for place in np.ndindex(self.results.shape):
-            fit: ShearStressFit | None = self.results[place].item()
+        for index in np.ndindex(self.results.shape):
+            fit: ShearStressFit | None = self.results[index].item()
             table = None if fit is None else fit.to_dataframe()
-            tables[place] = {} if table is None else table["value"].to_dict()
+            tables[index] = {} if table is None else table["value"].to_dict()
             if table is not None:
                 rows = zip(table.index, table["unit"], table["meaning"], strict=True)
                 about |= {name: (unit, meaning) for name, unit, meaning in rows}
@@ -57,7 +57,7 @@ class ShearStressFits(Conditions[ShearStressFit]):
 
     @property
     def curve(self) -> xr.Dataset:
-        """The computed curves, over the conditions and sliding_speed."""
+        """The computed curves of all conditions (condition dims, sliding_speed)."""
         parts = [
             fit.curve.reset_coords().expand_dims({d: [v] for d, v in labels.items()})
             for labels, fit in self
@@ -101,8 +101,8 @@ def fit_shear_stresses(
     contact
         As for `fit_shear_stress`.
     psd, viscosity, load, **options
-        As for `fit_shear_stress`, and the fields of `FitSettings`; arguments that differ between
-        conditions have their dim, e.g. spectra over ``surface``, or a load [N/m] over
+        As for `fit_shear_stress`, and the fields of `FitSettings`. An argument that differs between
+        conditions has their dim: e.g. spectra the dim ``surface``, or loads [N/m] the dim
         ``normal_force``.
 
     Returns
@@ -154,7 +154,7 @@ def fit_shear_stresses(
 
 
 def _further_dims(given: Mapping[str, object]) -> dict[Hashable, Any]:
-    """Return the dims and labels that distinguish conditions; those of the curves come first."""
+    """Return the dims and labels that distinguish conditions, first those of the curves."""
     coords: dict[Hashable, Any] = {}
     for value in given.values():
         holder = _main_variable(value)
@@ -165,7 +165,7 @@ def _further_dims(given: Mapping[str, object]) -> dict[Hashable, Any]:
 
 
 def _main_variable(value: Any) -> Any:
-    """Return the main variable of a dataset, which has its dims, or another argument unchanged."""
+    """Return the friction or the spectrum in a dataset; other arguments are returned unchanged."""
     for name in ("friction_coefficient", "psd_2d"):
         if name in getattr(value, "data_vars", ()):
             return value[name]

@@ -66,7 +66,8 @@ def fit_shear_stress(
     settings
         `FitSettings`; None fits only sigma_f to all points.
     **options
-        Single fields of these objects, as they were arguments in the last release.
+        Single fields of `Liquid`, `Interface`, `Solver` and `FitSettings`: arguments of the last
+        release.
 
     Returns
     -------
@@ -77,20 +78,18 @@ def fit_shear_stress(
     AnalysisError
         If there are too few points, an error bar is negative, or the surfaces do not touch.
 
-    Notes
-    -----
-    Since ``mu = mu_fluid + sigma_f a`` with a = int (A/A0) dx/(F_N/L), sigma_f is a weighted linear
-    regression: ``sum w a (mu - mu_fluid) / sum w a^2``, ``error = 1/sqrt(sum w a^2)`` with w the
-    points' 1/error^2. A point whose error is unknown or 0 gets the median of the others; if none is
-    known, weights are equal, the error comes from the scatter, and chi-square contains no
-    information. An error common to all points does not average out. It does not change the
-    estimate; its contribution to the error of sigma_f, ``common_error`` times the response of the
-    regression to ``mu``, is added. Errors shared through calibration, abscissa, and load, radius
-    and modulus of the model are in the covariance of the points, ``C = diag(e^2) + sum c c^T u^2``
-    with ``c = d mu/d ln(viscosity v)`` for the abscissa (`PointErrors`), its diagonal in
-    ``friction_coefficient_residual_u`` of the curve: regression, chi-square and the error of
-    sigma_f are those of generalised least squares. The errors of neighbouring speeds may be
-    correlated, because a run's level drifts: the correlation is estimated from the residuals and
+    Notes ----- Since ``mu = mu_fluid + sigma_f a`` with a = int (A/A0) dx/(F_N/L), sigma_f is a
+    weighted linear regression: ``sum w a (mu - mu_fluid) / sum w a^2``, ``error = 1/sqrt(sum w
+    a^2)`` with w the points' 1/error^2. A point whose error is unknown or 0 gets the median of the
+    others; if none is known, weights are equal, the error comes from the scatter, and chi-square
+    contains no information. An error common to all points does not average out. It does not change
+    the estimate; its contribution to the error of sigma_f, ``common_error`` times the response of
+    the regression to ``mu``, is added. Errors shared through calibration, abscissa, and load,
+    radius and modulus of the model are in the covariance of the points, ``C = diag(e^2) + sum c c^T
+    u^2`` with ``c = d mu/d ln(viscosity v)`` for the abscissa (`PointErrors`). The square root of
+    its diagonal is ``friction_coefficient_residual_u`` of the curve; regression, chi-square and the
+    error of sigma_f are those of generalised least squares. The errors of neighbouring speeds may
+    be correlated, because a run's level drifts: the correlation is estimated from the residuals and
     increases the error bar (`residual_error`). The runs test is that of Wald and Wolfowitz [1]_,
     exact and one-sided; the ratio is Birge's [2]_.
 
@@ -210,15 +209,16 @@ def fit_shear_stress(
 
 
 def _parts(curve: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return the fluid friction of a curve, and the factor of sigma_f in the solid friction."""
+    """Return fluid friction, and solid friction per shear stress [1/Pa], of a computed curve."""
     return curve["friction_coefficient"].values, curve["friction_per_shear_stress"].values
 
 
 def _slope(curve: xr.Dataset, stress: float, speed: np.ndarray) -> np.ndarray:
     """Return d mu/d ln v of the computed curve at speeds, which equals d mu/d ln(viscosity)."""
     fluid, area = _parts(curve)
-    place = np.log(curve["sliding_speed"].values)
-    return np.interp(np.log(speed), place, np.gradient(fluid + stress * area, place))
+    log_speed = np.log(curve["sliding_speed"].values)
+    slope = np.gradient(fluid + stress * area, log_speed)
+    return np.interp(np.log(speed), log_speed, slope)
 
 
 def _model_errors(
@@ -242,7 +242,7 @@ def _model_errors(
 def _fit_free(
     computed: _Computed, start: np.ndarray, mu: np.ndarray, errors: PointErrors, used: np.ndarray
 ) -> np.ndarray:
-    """Return the free parameters (logarithms) by least squares; each set determines sigma_f."""
+    """Return the logarithms of the free parameters by least squares; sigma_f follows from them."""
 
     def residual(extra: np.ndarray) -> np.ndarray:
         fluid, area = (part[used] for part in _parts(computed(extra)))
@@ -272,7 +272,7 @@ def _jacobian(
 
 
 def _covariance(weighted: np.ndarray, extra: np.ndarray) -> np.ndarray:
-    """Return the covariance in SI, computed with scaled columns for numerical stability."""
+    """Return the covariance of sigma_f and the free parameters in SI, from weighted derivatives."""
     size = np.linalg.norm(weighted, axis=0)
     inverse = np.linalg.pinv(weighted / size)
     scale = np.append(1.0, extra) / size

@@ -29,7 +29,7 @@ class ShearStressFit:
         The same, enlarged if the residuals exceed the points' errors or are correlated between
         neighbouring speeds (see `residual_error`).
     scatter_half_interval
-        Half the corresponding 95 % interval [Pa].
+        Half the 95 % interval [Pa] that belongs to `shear_stress_error_inflated`.
     residual_correlation
         Correlation [1] of the errors of neighbouring speeds, estimated from the residuals.
     chi_square, degrees_of_freedom, chi_square_p_value
@@ -48,7 +48,8 @@ class ShearStressFit:
     common_freedom
         Degrees of freedom of `common_error`.
     area_enhancement, area_enhancement_error
-        Real contact area with adhesion over that without [1], as given.
+        Given ratio [1] of the real contact area with adhesion to that without, and its standard
+        error.
     curve
         The computed curve at the measured speeds, with ``friction_coefficient_residual`` [1]
         (measured minus computed; NaN without a measurement) and ``used``.
@@ -94,8 +95,8 @@ class ShearStressFit:
     def statistical_half_interval(self) -> float:
         """Half the 95 % interval of sigma_f [Pa] if the spectrum were exact.
 
-        Two parts in quadrature: that of the points, and the common error times Student's t of its
-        own degrees of freedom (one for two runs, which may agree by chance).
+        The interval due to the points, combined in quadrature with the common error times
+        Student's t of its own degrees of freedom (one for two runs, which may agree by chance).
         """
         t = special.stdtrit(max(self.common_freedom, 1.0), 0.975)
         return float(np.hypot(self.scatter_half_interval, t * self.common_error))
@@ -107,7 +108,7 @@ class ShearStressFit:
         Raises
         ------
         AnalysisError
-            If the spectrum was measured and its error is unknown.
+            If the spectrum was measured but its error is unknown.
         """
         if self.spectrum_scanned and self.spectrum_error is None:
             raise AnalysisError(

@@ -24,7 +24,7 @@ def shear_stress_shift(uncertainty: xr.Dataset) -> tuple[float, float]:
     Returns
     -------
     tuple
-        Relative changes [1] of sigma_f, the first not above and the second not below 0, each
+        Relative changes [1] of sigma_f, zero or negative and zero or positive; the variations are
         combined in quadrature, as in the band of the curve.
     """
     mine = uncertainty.sel(variation=[n for n in uncertainty.variation.values if n in SPECTRUM])

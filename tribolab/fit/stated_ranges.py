@@ -19,9 +19,9 @@ class StatedRange:
     reason
         Reason for the variation.
     shown
-        Function: end of the range -> text.
+        Function that returns an end of the range as text.
     changed
-        Function: end of the range -> changed arguments.
+        Function that returns the arguments changed by an end of the range.
     """
 
     name: str

@@ -12,13 +12,13 @@ from tribolab.lubrication.factor_table import FactorTable
 from tribolab.lubrication.factors import FlowFactors
 
 EXCESS_OF_SHEAR = 0.24  # largest excess of phi_f over numerical results, from 2 to 3.2 h_rms
-LACK_OF_PRESSURE = 0.17  # largest lack of p(u) relative to numerical results, below _CLOSE
+LACK_OF_PRESSURE = 0.17  # largest relative increase of p(u) to numerical results, below _CLOSE
 _NUMERICS, _GAUSSIAN = 3.2, 5.0  # u/h_rms: end of numerical results, start of Gaussian gaps
 _CLOSE, _APART = 0.14, 0.28  # u/h_rms at which the correction of p(u) starts to decrease, and ends
 
 
 def factors_of_numerics(factors: FlowFactors) -> FlowFactors:
-    """Return factors with phi_f of numerical results, and Gaussian gaps at large separation.
+    """Return factors with phi_f from numerical results, and the Gaussian limit at large separation.
 
     Parameters
     ----------
@@ -29,7 +29,8 @@ def factors_of_numerics(factors: FlowFactors) -> FlowFactors:
     -----
     Up to 3.2 h_rms phi_f is divided by 1.24, the largest ratio to direct numerics (which exist from
     2 h_rms on). From 5 h_rms on all factors are ``limit + c (h/u)^2``, the limit of Gaussian gaps:
-    phi_fs of effective-medium theory exceeds it by up to 40 %. In between, the two are mixed.
+    phi_fs of effective-medium theory exceeds this limit by up to 40 %. Between 3.2 and 5 h_rms the
+    factors pass smoothly from one to the other.
 
     Examples
     --------
@@ -57,7 +58,7 @@ def factors_of_numerics(factors: FlowFactors) -> FlowFactors:
 
 
 def _gaussian_beyond(table: FactorTable, values: np.ndarray, height: float) -> FactorTable:
-    """Return a table with given values at small and the Gaussian limit at large separation."""
+    """Return a table with given values at small separation and the Gaussian limit at large."""
     start, end = np.log(_NUMERICS), np.log(_GAUSSIAN)
     part = ((np.log(table.u / height) - start) / (end - start)).clip(0, 1)
     part = part**2 * (3 - 2 * part)

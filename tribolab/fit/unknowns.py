@@ -1,4 +1,4 @@
-"""Unknown inputs of a model."""
+"""Ranges of the uncertain inputs of a computed Stribeck curve."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Unknowns:
     shear_stress_error
         Standard error [Pa] of sigma_f; None leaves it out.
     measured_to
-        Wavenumber [1/m] above which the spectrum is extrapolated, if ``origin`` does not state
+        Wavenumber [1/m] above which the spectrum is extrapolated, if its ``origin`` does not state
         this.
     outlet
         Whether a vented outlet may be flooded; an outlet stated as flooded is not varied.
@@ -67,7 +67,7 @@ _NAMES = {field.name for field in fields(Unknowns)}
 def merge_old_options(
     unknowns: Unknowns | None, options: Mapping[str, Any]
 ) -> tuple[Unknowns, dict[str, Any]]:
-    """Return the unknowns, including arguments of the last release, and all other arguments.
+    """Return unknowns updated by arguments that are now unknowns, and the other arguments.
 
     Examples
     --------

@@ -36,7 +36,7 @@ class Base(NamedTuple):
 
     @property
     def spectrum(self) -> xr.Dataset:
-        """Spectrum of the surface, which must be rough."""
+        """Spectrum of the surface, for code that is reached only with a rough surface."""
         assert self.psd is not None  # only rough surfaces have variations of roughness
         return self.psd
 

@@ -22,10 +22,10 @@ from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
 
 _LOW_PERCOLATION, _HIGH_PERCOLATION = 0.40, 0.50
-_LIQUID_RADII = 3.0  # inlet length in ball radii: some 30 mm
+_LIQUID_RADII = 3.0  # largest extent of the liquid around a ball, in ball radii: some 30 mm
 _FILM_CUTOFFS = 0.3e-9, 3e-9
 _OTHER_GAMMA = 0.5
-# unknowns that are not varied: of all surfaces, and of rough ones only
+# unknowns that are never varied: for all surfaces, and for rough surfaces only
 _FIXED = (
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
     ("cavitation", "the liquid ruptures at one pressure, that outside or of its vapour"),
@@ -112,7 +112,7 @@ def friction_factors(base: Base) -> Variation:
 
 
 def flow_and_shear_factors(base: Base) -> Variation:
-    """Replace phi_f by numerical results, and all factors by Gaussian gaps at large separation."""
+    """Replace phi_f by numerical results, and all factors by their limit at large separation."""
     factors = flow_factors(base.spectrum, base.rough_body, gamma=base.gamma)
     return Variation(
         "flow and shear factors",
@@ -135,7 +135,7 @@ def contact_pressure(base: Base) -> Variation:
 
 
 def inlet_length(base: Base) -> Variation | Skipped:
-    """Start the liquid at the edge of the cylinder, where its gap is no longer parabolic."""
+    """Vary where the liquid begins before a cylinder, or how far it extends around a ball."""
     name = "inlet length"
     if np.isfinite(base.inlet_length):
         return Skipped(name, "it is stated")
@@ -162,7 +162,7 @@ def inlet_length(base: Base) -> Variation | Skipped:
 
 
 def outlet(base: Base) -> Variation | Skipped:
-    """Exclude gas from the outlet, so that the liquid there sustains tension."""
+    """Flood a vented outlet: without gas, the liquid there sustains tension."""
     if base.outlet != "unknown":
         return Skipped("outlet", "it is stated")
     return Variation(
@@ -216,7 +216,7 @@ def fixed_parameters(base: Base) -> list[Skipped]:
 
 
 def _stated_text(base: Base) -> str:
-    """Return text on geometry and load without a stated range."""
+    """Return a text that names the geometry and load parameters without a stated range."""
     stated = {
         "radius": base.radius_range is None,
         "length": True,

@@ -13,8 +13,8 @@ from tribolab.surface.extrapolation import AS_MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 
 _ATOM_LENGTH = 0.3e-9  # size of an atom [m]
-_CUTOFF_RATIO = 10.0
-_PLATEAU_FACTOR = 2.0
+_CUTOFF_RATIO = 10.0  # factor by which the largest wavenumber is reduced
+_PLATEAU_FACTOR = 2.0  # factor by which an extrapolated plateau is raised
 _NO_TAIL = (
     "no part of the spectrum is marked as extrapolated to large wavenumbers (variable 'origin'); "
     "give measured_to"
@@ -22,7 +22,7 @@ _NO_TAIL = (
 
 
 def spectrum_band(base: Base) -> Variation | Skipped:
-    """Move the measured spectrum to the limits of its band, and the extrapolation with it."""
+    """Shift the measured spectrum to both limits of its band, and the extrapolated part with it."""
     psd = base.spectrum
     if "psd_2d_low" not in psd or "psd_2d_high" not in psd:
         return Skipped("spectrum band", "the spectrum has no psd_2d_low and psd_2d_high")

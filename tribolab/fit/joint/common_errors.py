@@ -33,7 +33,7 @@ def model_covariance(
     model, posterior, priors
         Of the fit with the nominal spectra.
     uncertainty
-        From `model_uncertainty` at one load, for each surface's number.
+        By number of the surface, the result of `model_uncertainty` at one load.
 
     Returns
     -------
@@ -97,8 +97,9 @@ def calibration_covariance(
     Returns
     -------
     numpy.ndarray
-        Covariance (parameter, parameter): of each part c of ln mu, ``Sigma J' V^-1 c``. For the
-        speed c is d ln mu/d ln v, the sum of d ln mu/d ln eta and the effect of the exponent n.
+        Covariance (parameter, parameter), the sum over all shared parts of the squared parameter
+        change ``Sigma J' V^-1 c``; c is the change of ln mu by one standard uncertainty. For the
+        speed c follows from d ln mu/d ln v, the sum of d ln mu/d ln eta and of the effect of n.
     """
     points = model.points
     rows: dict[str, np.ndarray] = {}
@@ -107,21 +108,21 @@ def calibration_covariance(
         data = curve.measured
         if "run" in data["friction_coefficient"].dims:
             continue  # such shared errors belong to the mean of the runs, not to each run
-        place = np.log(data.get("measured_speed", data["sliding_speed"]).values.astype(float))
+        log_speed = np.log(data.get("measured_speed", data["sliding_speed"]).values.astype(float))
         for name, part in shared_parts(data):
             relative = part / data["friction_coefficient"].values
-            known = np.isfinite(relative) & np.isfinite(place)
+            known = np.isfinite(relative) & np.isfinite(log_speed)
             if known.any():
                 row = rows.setdefault(name, np.zeros(points.log_speed.size))
-                row[mine] = np.interp(points.log_speed[mine], place[known], relative[known])
+                row[mine] = np.interp(points.log_speed[mine], log_speed[known], relative[known])
     slopes, answer = _response(model, posterior, priors)
     if speed_error > 0:
-        rows["speed"] = speed_error * _over_speed(model, posterior.centre, slopes)
+        rows["speed"] = speed_error * _speed_slope(model, posterior.centre, slopes)
     moved = np.array(list(rows.values())).reshape(-1, points.log_speed.size) @ answer.T
     return moved.T @ moved
 
 
-def _over_speed(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+def _speed_slope(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.ndarray:
     """Return d ln mu/d ln v at the points; only lubricated friction depends on the viscosity."""
     where = model.parameters
     solid = slopes[:, where.stress] @ theta[where.speed]
@@ -131,7 +132,7 @@ def _over_speed(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.
 def _response(
     model: JointModel, posterior: Posterior, priors: JointPriors
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return d ln mu/d theta (point, parameter), and the parameters' response to the points."""
+    """Return d ln mu/d theta (point, parameter), and d theta/d ln mu of the fit (its transpose)."""
     weights = posterior.weight
     tau, kappa = weights @ posterior.level, weights @ posterior.correlated
     points, where = model.points, model.parameters

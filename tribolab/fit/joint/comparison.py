@@ -27,12 +27,12 @@ class ComparedModel:
     name
         Name of the model.
     evidence
-        ln of its odds against the reference, from all points.
+        ln of the odds of this model against the reference, from all points.
     prediction
-        ln of the predictive density of each load's points given all others, summed over the loads,
-        minus that of the reference; NaN for one load.
+        ln of the predictive density of a load's points given all other points, summed over the
+        loads, minus the same sum of the reference; NaN for one load.
     prediction_error
-        Standard error of that sum, from the scatter over the loads; NaN for fewer than three.
+        Standard error of `prediction`, from the scatter between loads; NaN for fewer than three.
     shear_stress, shear_stress_low, shear_stress_high
         sigma_0 [Pa] of the first surface under the model, and its 95 % interval.
     words
@@ -60,7 +60,7 @@ class ModelComparison:
     models
         In the order given, the reference first.
     fits
-        The fits by the models' names.
+        The fit of each model, by its name.
     """
 
     reference: str
@@ -137,10 +137,10 @@ def _conclude(
     >>> _conclude(("b", 2), ("a", 3), -6.0, -4.0), _conclude(("b", 3), ("a", 3), -2.0, -6.0)
     ('the data contradict b', 'the data lean to a')
     """
-    tellers = np.array([evidence, prediction])
-    tellers = tellers[np.isfinite(tellers)]
-    strength = float(np.abs(tellers).min())
-    if strength < limits.MIN_LN_ODDS.value or np.ptp(np.sign(tellers)) > 0:
+    criteria = np.array([evidence, prediction])
+    criteria = criteria[np.isfinite(criteria)]
+    strength = float(np.abs(criteria).min())
+    if strength < limits.MIN_LN_ODDS.value or np.ptp(np.sign(criteria)) > 0:
         return f"the data do not tell {model[0]} from {reference[0]}"
     wanted, other = (model, reference) if evidence > 0 else (reference, model)
     if wanted[1] < other[1]:

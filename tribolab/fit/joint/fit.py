@@ -1,4 +1,4 @@
-"""Joint fit that starts from measured curves, contact and spectra."""
+"""Joint fit of the friction at all loads, from measured curves, contact and spectra."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ def fit_shear_stress_jointly(
         such as ``normal_force``, (surface) for several surfaces and (run) for runs that were not
         combined. Points with friction not above zero are left out.
     contact, psd
-        As for `stribeck_curve`; spectra of several surfaces over (surface).
+        As for `stribeck_curve`; spectra of several surfaces have the dim ``surface``.
     viscosity
         Stated viscosity [Pa s]: the median of its prior.
     load
-        F_N/L [N/m]; several loads over their dim.
+        F_N/L [N/m]; several loads as an array with their dim.
     priors
         Priors of the parameters.
     speed_range
@@ -62,8 +62,8 @@ def fit_shear_stress_jointly(
     speed_error
         Relative standard error [1] of the sliding speeds common to all points.
     area_enhancement
-        Real contact area with adhesion over that without [1]; over the loads or surfaces. The shear
-        stress then refers to the adhesive contact area.
+        Ratio [1] of the real contact area with adhesion to that without, for all curves or by load
+        or surface. The shear stress then refers to the adhesive contact area.
     dry
         Friction measured without the liquid.
     curves

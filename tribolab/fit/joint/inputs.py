@@ -33,10 +33,10 @@ class DryFriction:
     Parameters
     ----------
     measured
-        Dry curves in the form of the wet ones, at some of their loads.
+        Dry curves, in the same form as those in the liquid and at some of their loads.
     area_ratio
-        Real contact area dry over that in the liquid [1], both with adhesion; over the loads, or
-        one value for all.
+        Ratio [1] of the real contact area dry to that in the liquid, both with adhesion; one value
+        for each load, or for all.
     area_ratio_range
         Range of that ratio, some 95 % coverage, from the range of the works of adhesion; by default
         the ratio is exact.
@@ -60,7 +60,7 @@ class DryFriction:
 
     @property
     def area_ratio_error(self) -> float:
-        """Standard error of the logarithm of the ratio.
+        """Standard error of ln(area_ratio) from its range; 0 if the ratio is exact.
 
         Raises
         ------
@@ -137,7 +137,7 @@ def computed_curves(
     priors: JointPriors,
     model: Arguments,
 ) -> xr.Dataset:
-    """Compute the curves of a surface at all loads, over the plausible range of viscosity."""
+    """Compute the curves of a surface at all loads, for all plausible viscosities and speeds."""
     speed = measured["sliding_speed"].values
     speed = speed[np.isfinite(speed) & (speed > 0)]
     if not speed.size:
@@ -165,9 +165,8 @@ def curves_of_surface(
     dry: DryFriction | None,
 ) -> Iterator[LoadCurve]:
     """Yield the measured curves of a surface at each load, dry ones last."""
-    for place in range(loads.size):
-        labels = {dim: place for dim in loads.dims}
-        at = loads.isel(labels)
+    for index in range(loads.size):
+        at = loads.isel({dim: index for dim in loads.dims})
         response = _response(computed, at, loads)
         response = response.enlarged(_ratio_at(area_enhancement, surface, at))
         name = _curve_name(surface, at, loads)
@@ -206,7 +205,7 @@ def _select_measured(measured: xr.Dataset, surface: str, at: xr.DataArray) -> xr
 
 
 def _ratio_at(given: float | xr.DataArray, surface: str, at: xr.DataArray) -> float:
-    """Return a positive value for a surface and load, from a number or an array."""
+    """Return the ratio of contact areas at a surface and load; an error unless it is positive."""
     if isinstance(given, xr.DataArray):
         for dim in at.coords:
             if dim in given.dims:

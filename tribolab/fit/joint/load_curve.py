@@ -1,4 +1,4 @@
-"""Measured curves of a joint fit, and the points of all these curves."""
+"""Measured friction curves of a joint fit, and their points in one sequence."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NO_ERROR = Cure(
 
 
 class LoadCurve(NamedTuple):
-    """Measured friction at one load, and the computed response.
+    """Measured friction at one load, with the friction computed for this load.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class LoadCurve(NamedTuple):
         ``friction_coefficient`` over (sliding_speed), or over (run, sliding_speed), with ``_sem``
         or else ``_std``.
     response
-        Computed response. For a dry curve: the factor of the wet shear stress.
+        Computed friction. For a dry curve: a constant friction per shear stress.
     dry
         Whether the curve was measured without the liquid.
     """
@@ -78,10 +78,10 @@ def points_of(
     Notes
     -----
     A point of unknown error gets the median relative error of its curve. Errors from few runs are
-    uncertain, and one that is small by chance would outweigh all others: the variance of a point of
-    k runs becomes ``((k - 1) s^2 + 4 s0^2)/(k + 3)`` [1]_, with ``s0^2 = a^2 mu^2 + b^2`` fitted to
-    all such points: a part proportional to friction, and a constant one, e.g. from the zero of the
-    force.
+    uncertain, and a point whose error is small by chance would outweigh all others. Therefore the
+    variance of a point of k runs becomes ``((k - 1) s^2 + 4 s0^2)/(k + 3)`` [1]_, with ``s0^2 = a^2
+    mu^2 + b^2`` fitted to all such points: one part is proportional to friction, the other, e.g.
+    from the zero of the force, is constant.
 
     References
     ----------
@@ -93,7 +93,7 @@ def points_of(
         given = whole.get("friction_coefficient")
         several = given is not None and "run" in given.dims  # other variables may have the run dim
         runs = [whole.isel(run=k) for k in range(whole.sizes["run"])] if several else [whole]
-        parts += [_run_points(curve.name, run, number, place) for place, run in enumerate(runs)]
+        parts += [_run_points(curve.name, run, number, k) for k, run in enumerate(runs)]
     counts = [part.speed.size for part in parts]
     speed, friction, error, repeats = (
         np.concatenate([getattr(part, name) for part in parts])
@@ -111,8 +111,8 @@ def points_of(
         )
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.where(kept, _moderate(error, friction, repeats, kept) / friction, np.nan)
-    for place, curve in enumerate(curves):
-        mine = kept & (of_curve == place)
+    for number, curve in enumerate(curves):
+        mine = kept & (of_curve == number)
         if not mine.any():
             raise AnalysisError(
                 f"{shown(curve.name)}: no friction above zero from {speed_range[0]:g} to "
@@ -144,7 +144,7 @@ class _Run(NamedTuple):
 
 
 def _run_points(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
-    """Return the points of a curve at which both speed and friction are known."""
+    """Return the points of one run at which both speed and friction are known."""
     given = measured.get("friction_coefficient")
     if given is None or given.dims != ("sliding_speed",):
         raise AnalysisError(
@@ -167,7 +167,7 @@ def _run_points(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
 def _moderate(
     error: np.ndarray, friction: np.ndarray, repeats: np.ndarray, kept: np.ndarray
 ) -> np.ndarray:
-    """Return errors; those from few runs are shrunk towards the average variance of all points."""
+    """Return the standard errors; those from few runs are shrunk towards the usual error."""
     several = kept & np.isfinite(error) & (repeats > 1)
     if several.sum() < limits.MIN_POINTS_OF_LOAD.value:
         return error

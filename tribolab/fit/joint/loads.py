@@ -1,4 +1,4 @@
-"""Joint fit of the curves of several loads, from curves and responses to the result."""
+"""Joint fit of computed responses to the friction curves measured at several loads."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from tribolab.fit.joint.result import JointFit, Marginal
 from tribolab.units.stamping import stamp
 
 _INTERVAL_ENDS = 0.025, 0.975
-_RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # 2.5 % and 97.5 % quantiles over the scale parameter
-_ROUNDING_OF_INTERVAL = 1e-9  # share of an interval below which a value is a rounding error
+_RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # 2.5 % and 97.5 % quantiles for a scale of 1
+_ROUNDING_OF_INTERVAL = 1e-9  # share of its interval below which a value is a rounding error
 _DRAWN_SPEEDS = 61  # number of speeds in a plotted curve
 
 
@@ -47,7 +47,7 @@ def fit_loads(
     Parameters
     ----------
     curves
-        Measured curves in one liquid, for one or several surfaces, and dry ones.
+        Curves measured in one liquid and, if available, dry, for one or several surfaces.
     viscosity
         Stated viscosity of the liquid [Pa s].
     priors
@@ -60,7 +60,7 @@ def fit_loads(
         By surface, from `model_uncertainty` at one of the loads: effects of the uncertain spectrum,
         and of load, radius and modulus if varied.
     area_ratio_error
-        Standard error of ln of the ratio of areas of the dry curves; one for all, or by surface.
+        Standard error of ln(dry/wet contact area) for the dry curves; one for all, or by surface.
     speed_range
         Lowest and highest speed [m/s] to use.
 
@@ -95,7 +95,7 @@ def fit_loads(
         if isinstance(area_ratio_error, Mapping)
         else dict.fromkeys(surfaces, area_ratio_error)
     )
-    transfer = [  # 0 for a surface without dry curves, on which nothing depends
+    transfer = [  # 0 fixes the dry shear stress of a surface without dry curves
         float(np.hypot(priors.dry_over_wet, errors.get(surface, 0.0)))
         if surface in measured_dry
         else 0.0
@@ -132,7 +132,7 @@ def fit_loads(
 def _left_out(
     model: JointModel, priors: JointPriors, posterior: Posterior, curves: Sequence[LoadCurve]
 ) -> dict[str, float]:
-    """Return ln p(points of a curve | all other points) for each lubricated curve."""
+    """Return, for each lubricated curve, ln p(points of the curve | all other points)."""
     if np.unique(model.points.curve).size < 2:
         return {}
     rest = {}
@@ -151,14 +151,13 @@ def _marginals(
     spread = np.sqrt(np.diag(posterior.spread))
     reach = NORMAL * parameters.spread
     marginals = []
-    for place, (name, surface, logarithmic) in enumerate(_names_of(parameters, surfaces)):
-        values = np.array([middle, low, high, parameters.mean - reach, parameters.mean + reach])[
-            :, place
-        ]
+    everything = np.array([middle, low, high, parameters.mean - reach, parameters.mean + reach])
+    for index, (name, surface, logarithmic) in enumerate(_names_of(parameters, surfaces)):
+        values = everything[:, index]
         if logarithmic:
             values = np.exp(values)
-        before = parameters.spread[place]
-        reduction = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
+        before = parameters.spread[index]
+        reduction = max(0.0, 1 - float(spread[index] / before)) if before else np.nan
         value, *ends = map(float, values)
         if abs(value) < _ROUNDING_OF_INTERVAL * (ends[1] - ends[0]):
             value = 0.0  # a rounding error
@@ -176,14 +175,14 @@ def _marginals(
 def _names_of(parameters: Parameters, surfaces: Sequence[str]) -> list[tuple[str, str, bool]]:
     """Return name and surface of each fitted parameter, and whether it is a logarithm."""
     names = [("", "", False)] * parameters.mean.size
-    for places, name, logarithmic in (
+    for indices, name, logarithmic in (
         (parameters.stress, "shear_stress", True),
         (parameters.speed, "speed_exponent", False),
         (parameters.load, "load_exponent", False),
         (parameters.dry, "dry_over_wet", True),
     ):
-        for place, surface in zip(places, surfaces, strict=False):
-            names[place] = name, surface, logarithmic
+        for index, surface in zip(indices, surfaces, strict=False):
+            names[index] = name, surface, logarithmic
     names[parameters.viscosity] = "viscosity", "", True
     return names
 
@@ -202,7 +201,7 @@ def _points(
     curves: Sequence[LoadCurve],
     measured: MeasuredPoints,
 ) -> xr.Dataset:
-    """Return the points with the fitted friction, and the shared error part of the residuals."""
+    """Return the measured points with fitted friction, residuals and their shared part."""
     points = model.points
     shared = shared_by_points(points, points, priors.correlation_length)
     computed, ascribed = np.zeros(points.log_speed.size), np.zeros(points.log_speed.size)
@@ -233,7 +232,7 @@ def _points(
 
 
 def _bands(model: JointModel, posterior: Posterior, curves: Sequence[LoadCurve]) -> xr.Dataset:
-    """Return the fitted friction over speed at each load, with 95 % bands of fit and prediction."""
+    """Return the fitted friction at speeds and loads, with 95 % bands of fit and prediction."""
     ends = model.points.log_speed.min(), model.points.log_speed.max()
     grid = np.linspace(*ends, _DRAWN_SPEEDS)
     number = np.repeat(np.arange(len(curves)), grid.size)

@@ -23,9 +23,9 @@ class Points(NamedTuple):
     log_speed
         ln v, v in m/s (point).
     log_friction, error
-        ln mu and the standard error of mu over mu (point).
+        ln mu and the relative standard error of mu (point).
     curve, level
-        Index of the response and of the common level of each point (point).
+        Index of the computed response, and of the run whose level error a point has (point).
     """
 
     log_speed: np.ndarray
@@ -46,11 +46,11 @@ class Curve(NamedTuple):
     Parameters
     ----------
     response
-        Over ln(eta v); constant for a dry contact.
+        Friction as a function of ln(eta v); constant for a dry contact.
     surface
         Number of the surface.
     log_load
-        ln of the load over the reference load.
+        ln(load/reference load).
     dry
         Whether the curve was measured without the liquid.
     """
@@ -62,12 +62,12 @@ class Curve(NamedTuple):
 
 
 class Parameters(NamedTuple):
-    """Positions of the parameters in the vector, with prior mean and deviation (parameter).
+    """Indices of the parameters in a vector, and the mean and deviation of their priors.
 
     Parameters
     ----------
     stress, speed, load, dry
-        Indices of ln sigma_0, n, m, and ln of dry over wet shear stress, by surface.
+        Indices of ln sigma_0, n, m, and ln(dry/wet shear stress), by surface.
     viscosity
         Index of ln eta.
     mean, spread
@@ -97,19 +97,19 @@ def parameters_of(
     priors
         Priors of the other parameters.
     transfer
-        For each surface the prior's standard deviation of ln of its dry over its wet shear stress;
-        empty if nothing was measured dry.
+        For each surface, the prior standard deviation of ln(dry/wet shear stress); empty if nothing
+        was measured dry.
     """
-    places = np.arange(surfaces)
+    index = np.arange(surfaces)
     dry = 3 * surfaces + 1 + np.arange(len(transfer))
     mean = np.zeros(3 * surfaces + 1 + len(transfer))
-    mean[places], mean[3 * surfaces] = np.log(priors.shear_stress), np.log(viscosity)
+    mean[index], mean[3 * surfaces] = np.log(priors.shear_stress), np.log(viscosity)
     spread = np.repeat(
         [priors.shear_stress_spread, priors.speed_exponent, priors.load_exponent], surfaces
     )
     spread = np.concatenate([spread, [priors.viscosity_spread], transfer])
     return Parameters(
-        places, surfaces + places, 2 * surfaces + places, dry, 3 * surfaces, mean, spread
+        index, surfaces + index, 2 * surfaces + index, dry, 3 * surfaces, mean, spread
     )
 
 
@@ -119,8 +119,9 @@ class JointModel:
 
     Notes
     -----
-    ``ln mu = ln[f(eta v) + sigma_0 (v/v0)^n (F/F0)^m k(eta v)]``; for a dry curve f = 0, k is the
-    area with adhesion over the load, and sigma_0 is multiplied by the ratio of dry to wet stress.
+    ``ln mu = ln[f(eta v) + sigma_0 (v/v0)^n (F/F0)^m k(eta v)]``. For a dry curve f = 0, k is the
+    contact area with adhesion divided by the load, and sigma_0 is multiplied by the ratio of dry to
+    wet shear stress.
     """
 
     points: Points
@@ -129,7 +130,7 @@ class JointModel:
     reference_load: float
 
     def log_reference(self, load: float) -> float:
-        """Return ln of a load [N/m] over the reference load."""
+        """Return ln(load/reference load) of a load [N/m]."""
         return float(np.log(load / self.reference_load))
 
     def predicted(
@@ -140,7 +141,7 @@ class JointModel:
         Parameters
         ----------
         theta
-            The parameters (..., parameter); further dims are several states at once.
+            One or several sets of parameters (..., parameter).
         at
             Points to use instead of the measured ones.
         """
@@ -165,7 +166,7 @@ class JointModel:
         return self._design_of(self.points)
 
     def _design_of(self, points: Points) -> np.ndarray:
-        """Return the derivatives of ln(shear stress), which is linear in the parameters."""
+        """Return the derivatives of ln(shear stress) by the parameters (point, parameter)."""
         where, number = self.parameters, points.curve
         surface, log_load, dry = (
             np.array([getattr(curve, name) for curve in self.curves])[number]
@@ -185,14 +186,14 @@ class JointModel:
 
 
 class Shared(NamedTuple):
-    """Correlations of the points' errors: of common levels, and between neighbouring speeds."""
+    """Correlations between points of their level errors, and of their speed-correlated errors."""
 
     level: np.ndarray
     near: np.ndarray
 
 
 def shared_by_points(points: Points, other: Points, length: float) -> Shared:
-    """Return correlations (point, other point) for unit level errors and unit correlated errors."""
+    """Return the correlations of points within a run, and of neighbouring speeds in a curve."""
     same = points.curve[:, None] == other.curve
     apart = np.abs(points.log_speed[:, None] - other.log_speed)
     return Shared(

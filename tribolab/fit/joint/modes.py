@@ -1,4 +1,4 @@
-"""Most probable parameters of a joint fit, for many sizes of the shared errors together."""
+"""Most probable parameters of a joint fit, for many assumed sizes of the shared errors at once."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from tribolab.fit.joint.model import JointModel, Shared
 _MAX_STEPS = 200
 _NEGLIGIBLE_LN_ODDS = 25.0  # difference of log probability from the best mode
 _CONVERGED_DECREMENT = 1e-6  # gain in log probability of a converged mode: 1e-3 standard deviations
-_MAX_GAIN = 10.0  # assumed total gain of a search, in expected gains of the next step
+_MAX_GAIN = 10.0  # largest remaining gain of a search, relative to that expected of its next step
 _MIN_GAIN = 0.5  # share of the expected gain below which a shorter step is tried
-# the second set is tried if none of the first is better
+# shares of a Newton step that are tried; the second set only if none of the first is better
 _STEP_SHARES = (
     (0.5, 0.25, 0.12, 0.03),
     (1e-2, 1e-3, 1e-4, 1e-6, 1e-8),
@@ -25,7 +25,8 @@ _STEP_SHARES = (
 class PosteriorModes(NamedTuple):
     """Most probable parameters for each size of shared errors, with covariance and evidence.
 
-    The search for a mode may be stopped early, or converge slowly: `left` is its remaining gain.
+    The search for a mode may be stopped early, or converge slowly: `left` is the gain in log
+    probability that it may still make.
     """
 
     theta: np.ndarray

@@ -1,4 +1,4 @@
-"""Posterior of a joint fit: normals for all sizes of the shared errors, weighted by evidence."""
+"""Posterior of a joint fit: a mixture of normal distributions, weighted by evidence."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from tribolab.fit.joint.model import JointModel, shared_by_points
 from tribolab.fit.joint.modes import modes_of
 from tribolab.fit.joint.priors import JointPriors
 
-# Sizes of shared errors over the scale of their priors. The grid is widened if much weight is
-# at its end, e.g. if the model does not describe the curves.
+# Sizes of the shared errors, relative to the scale of their priors. The grid is widened if much
+# weight is at its end, e.g. if the model does not describe the curves.
 _LEVEL_GRID = np.array([0.06, 0.25, 0.5, 0.8, 1.2, 1.8, 2.6])
 _CORRELATED_GRID = np.array([0.06, 0.3, 0.6, 1.0, 1.5, 2.3])
 _MAX_WEIGHT_AT_END = 0.2
@@ -62,8 +62,8 @@ class Posterior(NamedTuple):
     def shared_quantile(self, which: str, probability: float) -> float:
         """Return a quantile of the size of "level" or "correlated" errors, by interpolation."""
         sizes = getattr(self, which)
-        values, place = np.unique(sizes, return_inverse=True)
-        share = np.bincount(place, self.weight)
+        values, index = np.unique(sizes, return_inverse=True)
+        share = np.bincount(index, self.weight)
         edges = np.r_[0.0, (values[1:] + values[:-1]) / 2, values[-1] * 1.2]
         return float(np.interp(probability, np.r_[0.0, np.cumsum(share)], edges))
 
@@ -142,7 +142,7 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
 
 
 def _log_prior(size: np.ndarray, scale: float) -> np.ndarray:
-    """Return ln of the Rayleigh probability of each size, between midpoints of the grid.
+    """Return ln of the Rayleigh probability of the interval around each size of a grid.
 
     Examples
     --------

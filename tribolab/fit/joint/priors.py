@@ -18,7 +18,8 @@ class JointPriors:
     shear_stress, shear_stress_spread
         Median of sigma_0 [Pa] and the standard deviation of its logarithm.
     speed_exponent, load_exponent
-        Standard deviations of n and m about 0; 0 fixes them: one shear stress for all.
+        Standard deviations of n and m about 0; 0 makes the shear stress independent of speed or
+        load.
     viscosity_spread
         Standard deviation of ln eta about the stated viscosity.
     level
@@ -28,7 +29,7 @@ class JointPriors:
     correlation_length
         Correlation length of that error, in ln v.
     dry_over_wet
-        Standard deviation of ln of the dry over the wet shear stress, if dry curves are given.
+        Standard deviation of ln(dry/wet shear stress), if dry curves are given.
 
     Raises
     ------

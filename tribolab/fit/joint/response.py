@@ -17,7 +17,7 @@ _KNOT_OFFSET = 1e4  # offset between the knots of successive responses; no respo
 
 
 class Response(NamedTuple):
-    """Friction at one load over ln(eta v), for a liquid of constant viscosity.
+    """Friction at one load as a function of ln(eta v), for a liquid of constant viscosity.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class Response(NamedTuple):
     solid
         Friction coefficient per shear stress [1/Pa].
     low, high
-        Range of ln(eta v), eta v in N/m, of the computation.
+        Computed range of ln(eta v), with eta v in N/m.
     rest
         `solid` at rest, or at the lowest computed speed.
     """
@@ -42,13 +42,12 @@ class Response(NamedTuple):
         larger = CubicSpline(self.solid.x, factor * self.solid(self.solid.x))
         return self._replace(solid=larger, rest=factor * self.rest)
 
-    def at(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def at(self, log_product: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return fluid friction f, area k, and derivatives, as f, df, k, dk at ln(eta v).
 
-        Below the lowest product the contact is as at rest; values far beyond the ends are not
-        meaningful.
+        Outside the computed range the values at its ends are returned.
         """
-        inside = np.clip(place, self.low, self.high)
+        inside = np.clip(log_product, self.low, self.high)
         fluid = np.exp(self.log_fluid(inside))
         slope = fluid * self.log_fluid(inside, 1)
         solid = self.solid(inside)
@@ -62,13 +61,13 @@ class Responses(NamedTuple):
     Parameters
     ----------
     ends
-        Lowest and highest ln(eta v) of each (response, 2).
+        Lowest and highest ln(eta v) of each response (response, 2).
     knots
         Start of the pieces, shifted by `_KNOT_OFFSET` from one response to the next (piece).
     begin
-        Start of the pieces (piece).
+        Start of the pieces, unshifted (piece).
     pieces
-        Coefficients of ln f and of k, the cubic one first (4, 2, piece).
+        Coefficients of ln f and of k, from the cubic to the constant term (4, 2, piece).
     """
 
     ends: np.ndarray
@@ -89,13 +88,13 @@ class Responses(NamedTuple):
             np.concatenate(pieces, axis=-1),
         )
 
-    def at(self, place: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return f, df, k, dk of the given responses (point) at ln(eta v) (..., point).
+    def at(self, log_product: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return f, df, k, dk as `Response.at`, for the response `which` of each point.
 
-        The same as `Response.at` of each.
+        `log_product` is ln(eta v) (..., point), `which` an index of the response (point).
         """
         low, high = self.ends[which].T
-        inside = np.minimum(np.maximum(place, low), high)
+        inside = np.minimum(np.maximum(log_product, low), high)
         piece = np.searchsorted(self.knots, inside + _KNOT_OFFSET * which, side="right") - 1
         x = (inside - self.begin[piece])[..., None, :]
         a, b, c, d = np.moveaxis(self.pieces[:, :, piece], 1, -2)
@@ -144,29 +143,33 @@ def response_of(curve: xr.Dataset, *, friction_factors: bool = True) -> Response
     rest = float(solid[np.argmin(np.abs(speed))]) if speed.size else 0.0
     known = (speed > 0) & np.isfinite(fluid) & (fluid > 0) & np.isfinite(solid)
     speed, fluid, solid = speed[known], np.asarray(fluid)[known], solid[known]
-    place = np.log(float(curve.attrs["viscosity_Pa_s"]) * speed)
-    kept = np.diff(place, prepend=-np.inf) > _MIN_SPACING
+    log_product = np.log(float(curve.attrs["viscosity_Pa_s"]) * speed)
+    kept = np.diff(log_product, prepend=-np.inf) > _MIN_SPACING
     if kept.sum() < limits.MIN_SPEEDS_OF_RESPONSE.value:
         raise AnalysisError(
             f"a computed curve has {kept.sum()} speeds above zero; at least "
             f"{limits.MIN_SPEEDS_OF_RESPONSE.value} are wanted"
         )
-    place = place[kept]
-    if np.diff(place).max() > limits.MAX_SPACING_OF_RESPONSE.value:
+    log_product = log_product[kept]
+    if np.diff(log_product).max() > limits.MAX_SPACING_OF_RESPONSE.value:
         raise AnalysisError("a computed curve wants three speeds in every decade, or more")
     return Response(
-        CubicSpline(place, np.log(fluid[kept])),
-        CubicSpline(place, solid[kept]),
-        float(place[0]),
-        float(place[-1]),
+        CubicSpline(log_product, np.log(fluid[kept])),
+        CubicSpline(log_product, solid[kept]),
+        float(log_product[0]),
+        float(log_product[-1]),
         rest,
     )
 
 
 def constant_response(solid: float) -> Response:
     """Return the response of a dry contact: `solid` is its real area over its load [1/Pa]."""
-    place = np.array([-1e3, 1e3])
+    log_product = np.array([-1e3, 1e3])
     nothing = np.full(2, -1e3)  # exp(-1000) is 0
     return Response(
-        CubicSpline(place, nothing), CubicSpline(place, np.full(2, solid)), -1e3, 1e3, solid
+        CubicSpline(log_product, nothing),
+        CubicSpline(log_product, np.full(2, solid)),
+        -1e3,
+        1e3,
+        solid,
     )

@@ -32,7 +32,7 @@ class Marginal:
         ``shear_stress`` (sigma_0), ``speed_exponent`` (n), ``load_exponent`` (m), ``viscosity``,
         ``dry_over_wet`` shear stress; ``level`` (tau) and ``correlated`` (kappa) error.
     surface
-        Surface; "" for all, or for a single one.
+        Name of the surface; "" if the parameter applies to all, or there is only one.
     value, low, high
         Median and ends of the 95 % interval, in SI.
     prior_low, prior_high
@@ -79,16 +79,17 @@ class JointFit:
     Parameters
     ----------
     marginals
-        Marginals of all parameters, in the order of `correlation`; the sizes of the shared errors
-        last.
+        Marginals of all parameters: first those of `correlation`, then the sizes of the shared
+        errors.
     correlation
-        Posterior correlation of the parameters without those sizes (parameter, parameter).
+        Posterior correlation of all other parameters than those sizes (parameter, parameter).
     reference_speed, reference_load
-        v0 [m/s] and F0 [N/m] of sigma_0.
+        v0 [m/s] and F0 [N/m], at which the shear stress is sigma_0.
     log_evidence
         ln of the probability density of the points under this model and its priors.
     left_out
-        ln of the density of each wet curve's points, given all other curves, by its name.
+        By name of each wet curve, ln of the probability density of its points given all other
+        curves.
     points
         Over (point): ``surface``, ``curve``, ``run``, ``sliding_speed``, ``friction_coefficient``
         with ``_sem`` and ``_model``; ``relative_residual``, ln of measured over computed friction;
