@@ -156,7 +156,7 @@ def _bracketed_quantile(
 
 
 def _quantile_bracket(ordered: np.ndarray, below: int, known: int, share: float) -> _About | None:
-    """Return the values around a quantile in `ordered`, which `below` smaller ones precede."""
+    """Return the values around a quantile; `ordered` lacks the `below` smallest values."""
     rank = share * (known - 1)
     first = int(np.floor(rank))
     last = first if first == rank else first + 1

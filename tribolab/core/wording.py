@@ -73,7 +73,7 @@ LOAD_STATED, LOAD_MEASURED, LOAD_VARIES = "stated", "measured", "varies"
 
 
 def load_label(load: float | None) -> float | None:
-    """Return the load [N] that identifies runs and their curve, rounded to four digits.
+    """Return a load [N] rounded to four digits; runs with equal values share a curve.
 
     >>> load_label(14.709975), load_label(None)
     (14.71, None)

@@ -34,7 +34,7 @@ def show_units() -> None:
 
 
 def add_units(data: xr.Dataset | xr.DataArray) -> str:
-    """Return xarray's HTML of a dataset with the unit of each variable, if it is tribolab's.
+    """Return xarray's HTML of a dataset; each variable shows its unit in tribolab's datasets.
 
     Our datasets are recognised by a variable with our unit and long name.
 

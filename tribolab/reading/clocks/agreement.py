@@ -63,7 +63,7 @@ def consistent(first: Estimate | StartShift, second: Estimate) -> bool:
 
 
 def confirmed(starts: Estimate, classes: Estimate, stroke: float) -> bool:
-    """Whether velocity classes confirm the result of the starts, for a stroke duration [s]."""
+    """Whether velocity classes confirm the shift from the starts; strokes last `stroke` [s]."""
     return (
         consistent(starts, classes)
         or abs(starts.shift - classes.shift) < limits.MAX_DELAY_OF_CLASSES.value * stroke

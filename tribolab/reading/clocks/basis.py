@@ -57,7 +57,7 @@ class Basis:
 
     @cached_property
     def models(self) -> list[tuple[str, Array]]:
-        """Name and basis functions (function, row) of each model: slack values, force first."""
+        """Name and basis functions (function, row) of each model: with slack, or a leading force."""
         table, models = Play(self._path), []
         for slack in (0.0, *SLACK_LENGTHS):
             driven = table.followed(0.5 * min(slack * self.longest, limits.MAX_SLACK.value))

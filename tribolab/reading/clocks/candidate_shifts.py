@@ -18,7 +18,7 @@ from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.joint import fit_jointly, sampling
 
-_FITTED_SPAN = 0.3  # share of the stroke duration in which each candidate is fitted
+_FITTED_SPAN = 0.3  # half width of the fit around each candidate, as share of a stroke's duration
 
 
 class Candidate(NamedTuple):

@@ -27,7 +27,7 @@ from tribolab.reading.clocks import limits
 _GRID_CELLS = 1 << 14  # cells of the coarse grid over the longer log
 _CLASSES_PER_DECADE = 3  # of speed
 _MAX_RIVALS = 8  # most rival shifts
-# share of a cell: tolerance for rounding at its edge
+# tolerance for rounding at the edge of a cell, as a share of its width
 _CELL_EDGE = 1e-6
 _CHANGES_PER_CLASS = 12  # ratio of changes to classes above which the FFT is used
 
@@ -239,7 +239,7 @@ class Classes:
         return shift
 
     def _by_class(self, values: Array) -> Array:
-        """Sum values of intervals between changes by class (shift, class)."""
+        """Return the sum over each class of the values in all intervals (shift, class)."""
         rows, classes = len(values), int(self._classes.max()) + 1
         place = self._classes + classes * np.arange(rows)[:, None]
         sums = np.bincount(place.ravel(), values.ravel(), rows * classes)

@@ -21,7 +21,7 @@ from tribolab.reading.clocks import limits
 _BLOCK_SAMPLES = 1 << 18
 
 _COUNTER_TICKS = [10.0**k for k in range(-9, 1)]
-# ranges of counters: bits of ticks, and a day; a fall by one of them is a wrap
+# ranges of counters [s]: 2^bits clock ticks, half a day, a day; a fall by one is a wrap
 _COUNTERS = tuple(
     sorted(
         {

@@ -23,7 +23,7 @@ from tribolab.reading.clocks import limits
 
 _COMPARED_PART = 0.05  # share of a stroke's length that is fitted, with equal time before it
 _STICK_DISTANCES = 17  # number of distances d, each twice the one before
-_LONGEST_STICK = 1e-6 * 2.0 ** (_STICK_DISTANCES - 1)  # d, in units of the stroke length
+_LONGEST_STICK = 1e-6 * 2.0 ** (_STICK_DISTANCES - 1)  # longest d, as a share of the stroke length
 _SEARCHED_TIME = 0.3  # share of the duration of fast strokes (or rests) that is searched
 _MAX_SAMPLES = 5000  # most samples of one start; longer, slow starts are not informative
 
@@ -155,6 +155,6 @@ def _misfit(onsets: list[Onset], shifts: Array) -> Array:
             explained, whole = (rise @ drift).T
             norm = np.maximum(np.einsum("sn,sn->s", rise, rise) - whole**2 / n, 1e-12)
             left = np.minimum(left, square - explained**2 / norm)
-            np.square(rise, out=rise)  # half the distance
+            np.square(rise, out=rise)  # the square of the exponential has half the distance d
         total += 0.5 * n * np.log(np.maximum(left, 1e-9 * square + 1e-30))
     return total

@@ -18,7 +18,7 @@ from tribolab.units.quantities import QUANTITIES
 
 
 def open_as(path: Path, dialect: Dialect) -> RawFile:
-    """Open a container that a dialect describes.
+    """Read the tables and settings of a container file as its dialect describes.
 
     Raises
     ------

@@ -16,7 +16,7 @@ from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import File, fits_format
 
-_ROWS = 4000  # rows that show whether two columns are one signal; enough to include motion
+_ROWS = 4000  # rows in which two columns are compared; enough to include motion
 _FIRST_LINE = re.compile(r"\s*([^\r\n]*)")
 _PREAMBLE = 1 << 13  # characters of the preamble that are searched
 _LINKED = 0.999  # correlation of one signal in volts and in its unit

@@ -51,7 +51,7 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
     if dialect.text.delimiter != _ANY:
         return dialect
     file = path if isinstance(path, File) else peek(path)
-    if file.format != "text":  # the reader reports it
+    if file.format != "text":  # the reader reports the wrong format
         return dialect
     lines, encoding = _lines_of(file.head)
     header, *below = _from_header(file, lines, dialect)

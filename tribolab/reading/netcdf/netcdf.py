@@ -95,11 +95,6 @@ def write_groups(groups: Mapping[str | None, xr.Dataset], path: str | Path) -> P
     path
         The file; an existing one is replaced.
 
-    Returns
-    -------
-    Path
-        The file.
-
     Raises
     ------
     TribolabError

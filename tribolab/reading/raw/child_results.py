@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from tribolab.arrays.scratch import take_in
 
 LENGTH = 8  # bytes of a message length
-_MAPPED = 1 << 20  # bytes above which a result stays in its file
+_MAPPED = 1 << 20  # bytes above which a result is mapped from its file, not copied
 _ALIGNED = 64
 _FUNCTIONS = {  # functions that rebuild arrays and datasets; all other globals are classes
     ("numpy", "_frombuffer"),
@@ -23,7 +23,7 @@ _FUNCTIONS = {  # functions that rebuild arrays and datasets; all other globals 
     ("numpy.core.multiarray", "scalar"),
     ("pandas._libs.internals", "_unpickle_block"),
     ("pandas.core.indexes.base", "_new_Index"),
-    ("pyarrow.lib", "_restore_array"),  # text of pandas
+    ("pyarrow.lib", "_restore_array"),  # columns of text in pandas
     ("pyarrow.lib", "py_buffer"),
     ("pyarrow.lib", "type_for_alias"),
     ("copyreg", "__newobj__"),

@@ -33,7 +33,7 @@ _ROUNDED = 1e-5  # relative rounding of a sentinel with few decimals
 _SINGLE = 2e-7  # relative rounding in single precision
 _TWICE = 2  # fewest occurrences of a sentinel
 _OUTSIDE = 5.0  # least ratio of a sentinel to the largest other number
-_KINDS = 4  # most sentinels per column
+_KINDS = 4  # most different sentinels per column
 
 
 class Marked(NamedTuple):

@@ -102,7 +102,7 @@ def read_with(name: str, path: Path) -> RawFile:
     return _read(name, _stamp(name), path, state.st_size, state.st_mtime_ns)
 
 
-@functools.lru_cache(maxsize=2)  # called for columns, then for numbers
+@functools.lru_cache(maxsize=2)  # a file is read twice: for its columns, and for its numbers
 def _read(name: str, stamp: int, path: Path, size: int, changed: int) -> RawFile:
     reader = _loaded(name)
     with path.open("rb") as file:

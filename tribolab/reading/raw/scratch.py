@@ -24,10 +24,7 @@ def scratch_place() -> str:
 def scratch_folder() -> Path:
     """Return a new folder that is removed when this process ends, or later if it is killed.
 
-    Returns
-    -------
-    Path
-        Folder in ``TMPDIR``, else in ``/var/tmp``, which is always on a disk.
+    The folder is in ``TMPDIR``, else in ``/var/tmp``, which is always on a disk.
     """
     with scratch_errors():
         folder = Path(tempfile.mkdtemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place()))
@@ -36,7 +33,7 @@ def scratch_folder() -> Path:
 
 
 def scratch_copy(path: Path, content: bytes) -> Path:
-    """Return a scratch file with the given content and the name of another file."""
+    """Write `content` to a scratch file with the name of `path`, and return its path."""
     copy = scratch_folder() / path.name
     with scratch_errors():
         copy.write_bytes(content)

@@ -49,7 +49,7 @@ class Ended(NamedTuple):
 
 
 class Server:
-    """Server process that is copied for children."""
+    """Server process that forks a child for each file."""
 
     def __init__(self) -> None:
         self.lock = threading.Lock()
@@ -69,7 +69,7 @@ class Server:
                     size = process.stdout.read(LENGTH)
                     if len(size) == LENGTH:
                         answer = process.stdout.read(int.from_bytes(size, "little"))
-                        ended: Ended | str = pickle.loads(answer)  # text: missing library
+                        ended: Ended | str = pickle.loads(answer)  # text names a missing library
                         return ended
                 except OSError:
                     pass
@@ -79,7 +79,7 @@ class Server:
         return Ended(-9)
 
     def _started(self) -> subprocess.Popen[bytes]:
-        mine = self._owner == os.getpid()  # a copied process has no server yet
+        mine = self._owner == os.getpid()  # after a fork, this process has no server yet
         if self._process is None or not mine or self._process.poll() is not None:
             self._process = subprocess.Popen(
                 [sys.executable, *_SERVE],

@@ -1,4 +1,4 @@
-"""Derived quantities of a run: formulas of columns and of values outside the table."""
+"""Derived quantities of a run: formulas with columns, and with values outside the table."""
 
 from __future__ import annotations
 

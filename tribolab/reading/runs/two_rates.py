@@ -23,7 +23,7 @@ _GAP = 3.0  # multiple of the usual distance above which a gap is not bridged
 
 
 class Together(NamedTuple):
-    """Time [s] and columns of the kept rows, with attributes on the changes."""
+    """Rows that were kept: time [s], columns, and attributes on the changes."""
 
     time: np.ndarray
     columns: dict[str, np.ndarray]

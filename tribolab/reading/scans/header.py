@@ -55,7 +55,7 @@ class MapHeader(NamedTuple):
 
 
 class _Entry(NamedTuple):
-    """Numbers after a name in a header, with units of length, and whether they are per point."""
+    """Name and numbers in a header, with units of length; `per_point` as in "0.5 um/pixel"."""
 
     key: str
     numbers: tuple[float, ...]

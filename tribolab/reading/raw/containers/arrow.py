@@ -1,4 +1,4 @@
-"""Parquet and Feather: one table, with metadata as settings."""
+"""Reading of Parquet and Feather files: one table, with metadata as settings."""
 
 from __future__ import annotations
 

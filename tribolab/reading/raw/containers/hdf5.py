@@ -126,7 +126,9 @@ class _Found:
             target = item.file[reference] if reference else None
             if not isinstance(target, self._h5py.Dataset):
                 continue
-            if what := foreign_storage(self._h5py, target.id):  # reachable without a link
+            if what := foreign_storage(
+                self._h5py, target.id
+            ):  # references bypass the check of links
                 raise refused(Path(item.file.filename), f"{name}({number})", what)
             element = f"{group}({number})" if group else f"({number})"
             if _is_char(target):

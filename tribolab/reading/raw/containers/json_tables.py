@@ -181,7 +181,7 @@ def _is_number(value: object) -> bool:
 
 
 def _of_common_length(lists: dict[str, list[float]]) -> dict[str, list[float]]:
-    """Return the columns of the most common length, if there are at least two."""
+    """Return the lists that share the most common length; none unless at least two do."""
     lengths = Counter(map(len, lists.values()))
     length, often = lengths.most_common(1)[0] if lengths else (0, 0)
     return {k: v for k, v in lists.items() if len(v) == length} if often > 1 else {}

@@ -27,7 +27,7 @@ _CUT = 8  # most bytes of an incomplete character at the end of the head
 _HEAD_LINES = 200  # most lines above a matrix
 _MIN_COLUMNS = 8  # fewest columns of a matrix; fewer may be a table
 _MAX_OF_LINE = 24  # most numbers per line of a profile that continues on the next line
-_NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")  # a name of a word and a number
+_NUMBERED = re.compile(r"([^\W\d_]\D{0,20})(\d{1,6})")  # a word followed by a number
 _ROWS = 4  # rows of equal width needed to recognise a matrix
 _MARKS = frozenset(
     ("", "no data", *"bad nan -nan n/a na inf -inf null none invalid void nodata".split())
@@ -120,7 +120,7 @@ def read_matrix(
 
 
 def map_of(heights: np.ndarray, header: MapHeader, instrument: str) -> xr.Dataset:
-    """Return the map of heights as in the file (y, x), converted to m; sentinels become NaN."""
+    """Return a map [m] (y, x) from the heights as in the file; sentinels become NaN."""
     assert header.dx and header.dy and header.height  # otherwise refused
     attrs = {"instrument": instrument}
     attrs |= {"doubtful": header.doubt} if header.doubt else {}

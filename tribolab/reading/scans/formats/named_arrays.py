@@ -131,7 +131,7 @@ def _of_hdf5(path: Path) -> list[NamedArray]:
 
 
 def _take(stored: list[NamedArray], name: str, values: np.ndarray, attrs: Json) -> None:
-    """Append an array of numbers to `stored`; of a group, append numeric attributes as arrays."""
+    """Append an array of numbers to `stored`, or each numeric attribute of a group."""
     if values.dtype.kind in "fiub" and values.size:
         own = np.squeeze(values) if values.ndim > 2 or values.size == 1 else values
         stored.append(NamedArray(name, own, attrs))
