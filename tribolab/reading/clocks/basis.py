@@ -57,7 +57,7 @@ class Basis:
 
     @cached_property
     def models(self) -> list[tuple[str, Array]]:
-        """Name and basis functions (function, row) of each model: with slack, or a leading force."""
+        """Name and basis functions (function, row) of each model: with slack, or leading force."""
         table, models = Play(self._path), []
         for slack in (0.0, *SLACK_LENGTHS):
             driven = table.followed(0.5 * min(slack * self.longest, limits.MAX_SLACK.value))
@@ -125,7 +125,7 @@ class Basis:
     def _ramps(
         self, velocity: Array, way: NDArray[np.int64], last: NDArray[np.int64], length: float
     ) -> Array:
-        """Return the direction of the last motion, with ramps before the log shows a start."""
+        """Return the direction of motion (kept at rest), changing in a ramp before each start."""
         out = last.astype(float)
         starts = [k for k in self.events if way[k] != 0]
         for k, after in zip(starts, [*starts, len(way) - 1][1:], strict=True):

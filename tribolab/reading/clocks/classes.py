@@ -24,8 +24,8 @@ from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
-_GRID_CELLS = 1 << 14  # cells of the coarse grid over the longer log
-_CLASSES_PER_DECADE = 3  # of speed
+_GRID_CELLS = 1 << 14  # cells into which the longer log is divided
+_CLASSES_PER_DECADE = 3  # velocity classes per decade of speed
 _MAX_RIVALS = 8  # most rival shifts
 # tolerance for rounding at the edge of a cell, as a share of its width
 _CELL_EDGE = 1e-6
@@ -84,7 +84,7 @@ def coarse_shift(
     expected: float,
     apart: float = 0.0,
 ) -> Coarse | None:
-    """Return the best shift on a grid, its half width, and rivals at least `apart` [s] away."""
+    """Return the best shift on a grid, its uncertainty, and rivals at least `apart` [s] away."""
     spans = force_time[-1] - force_time[0], motion_time[-1] - motion_time[0]
     cell = max(spans) / _GRID_CELLS
     cells = [int(span / cell + _CELL_EDGE) + 1 for span in spans]

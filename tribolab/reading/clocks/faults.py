@@ -163,7 +163,7 @@ class _Search:
             good = self.time[done:row][~self.astray[done:row]]
             self.top = max(self.top, float(good.max(initial=-np.inf)))
             done = row
-            if self.time[row] > self.top:  # the clock only returns from stray stamps ahead
+            if self.time[row] > self.top:  # not back in time: the rows before it were stray
                 continue
             if (stop := self._end_of_fall(row)) is not None:
                 self.astray[row:stop] = True

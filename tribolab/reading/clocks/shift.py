@@ -111,7 +111,7 @@ class _Search:
         _require(self.classes.min() != self.classes.max())
         self.force = (force - force.mean()) / force.std()
         self.basis = Basis(motion_time, self.motion)
-        _require(len(self.basis.begins))  # without a start, the whole log is motion
+        _require(len(self.basis.begins))  # without a start, the stage moves all the time
         self.fit = Classes(self.force_time, self.force, motion_time, self.classes)
         # strokes of very different speeds are not interchangeable
         self.wide = _has_different_speeds(self.motion, self.way)
@@ -161,7 +161,7 @@ class _Search:
         self.starts, self.onsets, self.agree = estimate, estimate, True
         if estimate.rate == 0.0:
             self.onsets = self._by_onsets(estimate)
-            # of two consistent methods, the more precise one is kept
+            # if both methods agree, the more precise result is kept
             apart = abs(self.onsets.shift - estimate.shift)
             self.agree = apart <= limits.MAX_ERRORS_OF_AGREEMENT.value * estimate.uncertainty
             vaguer = self.agree and self.onsets.uncertainty > estimate.uncertainty
@@ -277,7 +277,7 @@ class _Search:
         return estimate._replace(refused=doubt)
 
     def _two_methods(self) -> tuple[Estimate, float] | None:
-        """Return a shift that two methods support, and its least error as a share of a stroke."""
+        """Return a shift that two methods support, and its least error in stroke durations."""
         ways, stroke = self.ways, self.stroke
         starts, motion, classes = ways.get("starts"), ways.get("motion"), self.first
         sharp = limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke

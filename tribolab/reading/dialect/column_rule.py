@@ -114,7 +114,7 @@ class Column(Strict):
 
     @property
     def attributes(self) -> dict[str, float | bool]:
-        """Return attributes of the run: stated zero uncertainty, and whether the signal is rectified."""
+        """Attributes of the run: stated zero uncertainty, and whether the signal is rectified."""
         attrs: dict[str, float | bool] = {}
         if self.zero_uncertainty is not None:
             unit = self.si_unit(None)

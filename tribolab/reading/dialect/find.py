@@ -82,7 +82,7 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
 
 
 def recognise(path: str | Path) -> Dialect:
-    """Return the dialect of the known instrument that wrote a file, from its content.
+    """Recognise the instrument that wrote a file from its content, and return its dialect.
 
     Raises
     ------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import netCDF4
 
 CHUNK = 65_536  # samples; a default chunk would be the whole array
-_MIN_COMPRESSED = 1024  # values; shorter arrays are not compressed
+_MIN_COMPRESSED = 1024  # fewest values of an array that is compressed
 _COMPRESSION = 1  # higher levels hardly compress noise better
 _MAX_SHARE = 0.95  # compressed share of the bytes above which compression is not worthwhile
 _BLOCKS, _BLOCK = 4, 1024  # number and length of the pieces from which the filter is chosen

@@ -15,7 +15,7 @@ INTERVAL_PATTERN = rf"^{INTERVAL_KEY}: (\S+)"
 
 
 class OneClock(NamedTuple):
-    """Columns at the times of one clock; `others`: clocks of interpolated columns, by index."""
+    """Columns at the times of one clock, and the original clocks of interpolated ones."""
 
     values: list[np.ndarray]
     clock: Clock

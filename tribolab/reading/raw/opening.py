@@ -39,7 +39,7 @@ _HANDLED = (
     *(RuntimeError, Warning),
 )
 
-NO_ROOM = 6  # exit code of a child that cannot write its result
+NO_ROOM = 6  # exit code of a child process that cannot write its result
 inside = False  # whether this process is the child
 # refusals and failures with their time [s], by path, size, time, inode and call; without them, a
 # dozen readers would each try a bad file for some seconds

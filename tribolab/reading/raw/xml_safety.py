@@ -107,7 +107,7 @@ def _steps(block: bytes) -> np.ndarray:
     steps[second == ord("/")] = -1
     steps[(second == ord("?")) | (second == ord("!"))] = 0
     ends = np.flatnonzero(letters[1:] == ord(">"))
-    ends = ends[letters[ends] == ord("/")]  # of an empty element: <a/>
+    ends = ends[letters[ends] == ord("/")]  # end of an empty element: <a/>
     empty = np.searchsorted(starts, ends) - 1
     steps[empty[empty >= 0]] = 0
     return steps

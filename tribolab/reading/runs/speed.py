@@ -194,7 +194,7 @@ def _by_strokes_of_steps(
         columns["step"] = np.repeat(np.arange(1, len(bounds)), np.diff(bounds)).astype(np.int32)
     velocity, mean_speed = np.zeros(len(time)), np.zeros(len(time))
     steps: list[Json] = []
-    without: list[tuple[int, int, float]] = []  # rows and frequency of steps without reversal
+    without: list[tuple[int, int, float]] = []  # first and last row, frequency
     for first, stop in zip(bounds[:-1], bounds[1:], strict=True):
         if any(values[first] == 0 for values in of_steps.values()):
             continue

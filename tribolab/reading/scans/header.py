@@ -247,7 +247,7 @@ def _is_pitch(entry: _Entry) -> bool:
     axes = axes_of(entry.key)
     if "z" in axes or entry.means("vertical"):
         return entry.means("pitch") and bool(axes & {"x", "y"})
-    bare = axes and not any(word in AXES for word in words_of(entry.key))  # "dx"
+    bare = axes and not any(word in AXES for word in words_of(entry.key))  # e.g. "dx"
     return entry.per_point or bool(bare) or entry.means("pitch") or entry.means("lines_pitch")
 
 

@@ -19,7 +19,7 @@ from tribolab.reading.scans.limits import (
 
 
 def take_isolated(height: np.ndarray) -> list[Marked]:
-    """Replace sentinels, exact heights far outside all others, by NaN, and return them.
+    """Replace sentinels (exact heights far outside all others) by NaN, and return them.
 
     Parameters
     ----------

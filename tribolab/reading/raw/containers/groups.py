@@ -80,7 +80,7 @@ def plain(value: object) -> object:
 
 
 def settings_of(key: str, value: object, path: str = "") -> list[Setting]:
-    r"""Return an attribute as a list of one setting; an empty list if it has no plain value.
+    r"""Return a list with an attribute as setting; empty if its value is nested or blank.
 
     Parameters
     ----------

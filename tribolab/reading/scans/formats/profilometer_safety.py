@@ -12,7 +12,8 @@ from tribolab.core.errors import ReadError
 
 _MEGABYTE = 1 << 20
 _BINARY = (b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
-_MAX_LINES, _MAX_ROW = 2_000_000, 1 << 20  # limits of text without a dialect
+# most lines, and most characters of a line, in text without a dialect
+_MAX_LINES, _MAX_ROW = 2_000_000, 1 << 20
 _HEADER_LINES = 200  # header lines that SurfaceTopography's column reader can skip
 _MAX_LINE = 4096  # most bytes of a line with words, on which patterns take quadratic time
 _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")

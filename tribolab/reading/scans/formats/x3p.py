@@ -27,7 +27,7 @@ from tribolab.reading.scans.grid import even, gridded
 _MAIN = "main.xml"
 _ROOT = b"ISO5436_2"
 _TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
-_MAX_POINTS = 1 << 31  # most points
+_MAX_POINTS = 1 << 31  # most points of a map
 _UNKNOWN = {"", "unknown", "not available", "n/a", "none"}
 _FIELDS = {
     "recorded_at": "Record2/Date",
