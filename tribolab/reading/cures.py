@@ -1,4 +1,4 @@
-"""How to mend what is said of raw files, in words for each who may read it."""
+"""Remedies for errors about raw files, in words for each audience (see `Cure`)."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ RUN, SURFACE = "[[run]]", "[[surface]]"
 
 
 def name_instrument(table: str = "", say: str = "say which with") -> Cure:
-    """Cure by naming the instrument of a file.
+    """Return the remedy "name the instrument of the file".
 
     Parameters
     ----------
     table
-        The table of a campaign file that names the file; either of two if it is not known.
+        Table of a campaign file in which the file is named; if unknown, both are mentioned.
     say
-        What comes before the option.
+        Words before the option.
 
     Examples
     --------
@@ -34,7 +34,7 @@ def name_instrument(table: str = "", say: str = "say which with") -> Cure:
 
 
 def unknown_instrument(path: Path, table: str) -> Cure:
-    """Cure for a file of an instrument that is not known, and where to name what is drafted."""
+    """Return the remedy "draft a dialect, and name it" for a file of an unknown instrument."""
     command = "'tribolab info {} --write my.toml' drafts a description of it"
     name = name_instrument(table, say="name it with")
     bare = shlex.quote(path.name)
@@ -58,14 +58,14 @@ PERHAPS_PROFILE = Cure(
 
 
 def either(first: str, other: Cure) -> Cure:
-    """Return a way to mend something that is the same for all, and another."""
+    """Return two alternative remedies as one; the first has the same words for all audiences."""
     return Cure(
         *(f"{first}, or {other.message_for(who)}" for who in ("notebook", "terminal", "campaign"))
     )
 
 
 def joined(first: Cure, second: Cure) -> Cure:
-    """Return two ways to mend something as one."""
+    """Return two remedies as one, separated by a semicolon."""
     return Cure(
         *(
             f"{first.message_for(audience)}; {second.message_for(audience)}"

@@ -1,4 +1,4 @@
-"""File names with wildcards."""
+"""Search for files by names with wildcards."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def matching(pattern: str | Path) -> list[Path]:
         If there is no match.
     """
     path = Path(pattern)
-    folder = next(parent for parent in path.parents if parent.is_dir())  # whatever its name is
+    folder = next(parent for parent in path.parents if parent.is_dir())  # its name may have "*"
     names = folder.glob(str(path.relative_to(folder)))
     files = sorted(name for name in names if not name.name.startswith("."))
     if not files:
@@ -38,7 +38,7 @@ def matching(pattern: str | Path) -> list[Path]:
 
 
 def why_missing(path: Path) -> str:
-    """Return text on the missing part of a path: the file, its folder, or all matches."""
+    """Return in words what is missing of a path: the file, its folder, or any match."""
     if any(sign in str(path.parent) for sign in "*?") and not path.parent.is_dir():
         return "the pattern matches nothing"
     if not path.parent.is_dir():

@@ -1,4 +1,4 @@
-"""Viscosity over the shear rate, from the files of rheometers."""
+"""Viscosity against shear rate, from files of rheometers."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from tribolab.reading.modulus_tables import Column, TableKind, find_table, numbe
 from tribolab.reading.raw.source import read_unchanged
 
 _UNITS = {"shear_rate": "1/s", "viscosity": "Pa s"}
-_SAME_RATE = 0.02  # of it: what a rheometer leaves of one set-point
+_SAME_RATE = 0.02  # difference in ln(rate) between rows of one set-point
 
 
 class FlowCurve(NamedTuple):
-    """Shear rates [1/s], rising, and the viscosity [Pa s] at each."""
+    """Viscosity [Pa s] against shear rate [1/s], in order of increasing rate."""
 
     shear_rate: np.ndarray
     viscosity: np.ndarray
@@ -30,7 +30,7 @@ def read_flow_curve(path: str | Path) -> FlowCurve:
     ----------
     path
         Delimited or aligned text in any common encoding, or a workbook, with columns of shear rate
-        and viscosity. Units stand in brackets or in a row of their own.
+        and viscosity. Units are in brackets or in a row of their own.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def read_flow_curve(path: str | Path) -> FlowCurve:
 
 
 def _concept(label: str) -> str:
-    """Return what of a flow curve a name stands for; "" if nothing."""
+    """Return the quantity of a flow curve that a column name means; "" if it means neither."""
     whole = normalise_label(label)
     words = [word for word in known_words("run") if word.quantity in _UNITS]
     return next((w.quantity for w in words if whole in (*w.stems, *w.symbols)), "")

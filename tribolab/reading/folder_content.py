@@ -1,4 +1,4 @@
-"""Files of a folder or pattern by what they contain: runs, scans, moduli, roughness results."""
+"""Content of the files in a folder or pattern: runs, scans, moduli, roughness results."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def contents_of(paths: Iterable[Path], instrument: str | None = None) -> dict[Pa
     """Return what each file contains: "run", "scan", "modulus" or "results".
 
     An unreadable file counts as a run. A text without a table of numbers, such as a log that broke
-    off, counts as what the files contain whose names differ from its own in numbers only.
+    off, gets the usual content of the files whose names differ from its own only in numbers.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def _without_numbers(path: Path) -> str:
 
 
 def _content_of(path: Path, instrument: str | None) -> str:
-    """Return what a file contains; "" of a text without a table of numbers."""
+    """Return what a file contains; "" for a text without a table of numbers."""
     try:
         kind = kind_of(path, instrument)
         if kind != "unknown":
@@ -65,7 +65,7 @@ def _content_of(path: Path, instrument: str | None) -> str:
     except TribolabError:
         if instrument is not None:
             raise
-        return "run"  # reading it as a run says what is wrong
+        return "run"  # reading the file as a run reports the error
 
 
 def files_with(content: str, pattern: str | Path) -> list[Path]:

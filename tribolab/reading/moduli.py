@@ -1,4 +1,4 @@
-"""Storage and loss modulus over frequency, from the files of rheometers and DMA instruments."""
+"""Storage and loss modulus against frequency, from files of rheometers and DMA instruments."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from tribolab.units.quantities import unit_conversion
 from tribolab.units.reciprocals import reciprocal
 
 SHEAR_TO_TENSILE = 3.0  # E = 2 (1 + nu) G of an incompressible solid
-_SAME_FREQUENCY = 1e-3  # of it: what rounding leaves of one set-point
-_SAME_TEMPERATURE = 3.0  # K: what an oven leaves within one sweep
+_SAME_FREQUENCY = 1e-3  # relative difference of equal set-points due to rounding
+_SAME_TEMPERATURE = 3.0  # K, variation of the oven temperature within one sweep
 
 
 class ModulusTable(NamedTuple):
-    """A modulus as a file holds it, sorted by frequency.
+    """Tensile storage and loss modulus from a file, sorted by frequency.
 
-    `angular_frequency` [rad/s], `storage` and `loss` [Pa] of tension (n); `temperature` [C], NaN
-    where the file has none; `remarks` say what was taken for granted.
+    `angular_frequency` [rad/s], `storage` and `loss` [Pa] have dims (n); `temperature` [C] is NaN
+    if the file states none; `remarks` list assumptions.
     """
 
     angular_frequency: np.ndarray
@@ -48,20 +48,20 @@ def read_modulus_table(
     sheet: str | None = None,
     unit: str | None = None,
 ) -> ModulusTable:
-    """Read storage and loss modulus over frequency, in whatever way instruments write them.
+    """Read storage and loss modulus against frequency from an export of any instrument.
 
     Parameters
     ----------
     path
-        Delimited or aligned text in any common encoding, or a workbook. Wanted are columns of a
+        Delimited or aligned text in any common encoding, or a workbook. Required are columns of
         frequency or angular frequency, and of two of: storage modulus, loss modulus, loss factor,
-        complex modulus with its phase angle. Units stand in brackets or in a row of their own.
+        complex modulus with its phase angle. Units are in brackets or in a row of their own.
     sweep
-        Which sweep of a file that holds several: its number from 0, or its temperature ("25 C").
+        Which of several sweeps in the file: its number from 0, or its temperature ("25 C").
     sheet
         Name of the workbook's sheet; if not given, the first that has such a table.
     unit
-        Of the moduli, for a file that does not state it ("MPa").
+        Unit of the moduli ("MPa"), for a file that does not state it.
 
     Returns
     -------
@@ -90,16 +90,16 @@ def read_modulus_table(
 
 
 def is_modulus_file(path: str | Path) -> bool:
-    """Whether a file holds a table of storage and loss modulus over frequency, by its beginning."""
+    """Whether the first rows of a file are a table of storage and loss modulus."""
     try:
         find_table(Path(path), None, HEAD)
-    except (ReadError, OSError):  # whoever reads it says why it cannot be opened
+    except (ReadError, OSError):  # the reader of the file reports why it cannot be opened
         return False
     return True
 
 
 def _in_si(table: Table, unit: str | None, name: str, remarks: list[str]) -> np.ndarray:
-    """Return angular frequency, storage, loss and temperature (4, n) of tension or shear."""
+    """Return angular frequency [rad/s], both moduli [Pa] and temperature as rows (4, n)."""
     rows = [numbers_of(row, table.columns, table.decimal) for row in table.rows]
     values = np.array([row for row in rows if row is not None], dtype=float).reshape(
         -1, len(table.columns)
@@ -136,7 +136,7 @@ def _in_si(table: Table, unit: str | None, name: str, remarks: list[str]) -> np.
 
 
 def _to_angular(column: Column, name: str, remarks: list[str]) -> float:
-    """Scale to rad/s; a name that says omega and a unit that does not say radians contradict."""
+    """Return the factor from a frequency column to rad/s; raise if name and unit contradict."""
     angular, unit = column.concept == "angular_frequency", column.unit
     if unit in NO_UNIT:
         unit = "rad/s" if angular else "Hz"
@@ -159,7 +159,7 @@ def _to_angular(column: Column, name: str, remarks: list[str]) -> float:
 def _possible(data: np.ndarray, name: str, remarks: list[str]) -> np.ndarray:
     """Leave out rows with a negative modulus, which no passive solid has: the force was too small.
 
-    File: a Mettler DMA below 0.1 Hz, where the force is 0.3 % of that above
+    File: a Mettler DMA below 0.1 Hz, with 0.3 % of the force at higher frequencies
     (MahdiTBT/DMA-analysis-suite).
     """
     if data[0].min() <= 0:
@@ -180,7 +180,7 @@ def _possible(data: np.ndarray, name: str, remarks: list[str]) -> np.ndarray:
 
 
 def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarray:
-    """Return the sweep asked for; a new one begins where the frequency turns back."""
+    """Return one sweep of the data; a new sweep begins where the frequency changes direction."""
     if np.ptp(data[0]) <= _SAME_FREQUENCY * data[0].max():
         hertz = float(np.median(data[0])) / (2 * np.pi)
         raise ReadError(
@@ -196,7 +196,7 @@ def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarr
     if sweep is None and len(sweeps) == 1:
         return data
     if sweep is None and np.unique(data[0]).size == data.shape[1]:
-        return data  # a master curve whose rows are in no order
+        return data  # a master curve with unordered rows
     if isinstance(sweep, str):
         return _at_temperature(sweeps, sweep, name)
     if sweep is None or not 0 <= sweep < len(sweeps):

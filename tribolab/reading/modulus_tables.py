@@ -1,4 +1,4 @@
-"""Where the table of a modulus stands in a text or workbook: its columns, units and rows."""
+"""Search for a modulus table in a text or workbook: its columns, units and rows."""
 
 from __future__ import annotations
 
@@ -18,31 +18,32 @@ from tribolab.reading.text.first_bytes import peek, text_of
 from tribolab.reading.unit_texts import converts
 from tribolab.units.conversion import conversion
 
-HEAD = 200  # rows among which the names stand
+HEAD = 200  # rows at the start of a file that may contain the column names
 _LARGEST = 32 << 20  # bytes of a table in text
-_MAX_NAME, _MAX_COLUMNS = 80, 300  # letters of a name, and columns
+_MAX_NAME, _MAX_COLUMNS = 80, 300  # characters of a column name; columns of a row with names
 _WORKBOOKS = (".xls", ".xlsx", ".xlsm", ".ods")
 _PRIMES = str.maketrans({"\u2032": "'", "\u2019": "'", "\u00b4": "'", "\u2033": '"', "\u201d": '"'})
-_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")  # behind "G' in"
+_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")  # the unit in brackets after a name
 _IN = re.compile(r"\b(?:in|en)$")
 _BARE_UNIT = re.compile(r"(.+?)(?:/|\s(?:in|en)\s)\s*([^\s/][^\s]*)")  # E'/MPa, G' in Pa
 _COMMENT = re.compile(r"^\s*[#%]+\s?")
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
 _COMMA, _POINT = (re.compile(rf"(?<![\d{s}])\d+{s}\d+(?![\d{s}])") for s in (",", r"\."))
 _SHEAR = re.compile(r"\bshear|schub|scher|torque|drehmoment", re.IGNORECASE)
-# what a rheometer turns (TRIOS, RheoCompass), and how a DMA loads plates without turning them
+# geometries of rheometers (TRIOS, RheoCompass), which measure shear
 _TURNED = re.compile(
     r"plate[\s-]*plate|parallel[\s-]plate|platte[\s-]*platte|\bcone\b|kegel|couette|concentric"
     r"|\b(?:PP|CP|CC)\d{2}\b",
     re.IGNORECASE,
 )
+# ways of loading in a DMA, which may also have plates
 _PRESSED = re.compile(r"compress|tension|tensile|cantilever|bend|druck|zug", re.IGNORECASE)
 NO_UNIT = ("", "-", "1", "[]", "[-]", "[1]")
 Row = list[str]
 
 
 class Column(NamedTuple):
-    """A column of the table: its place in a row, its name, what that means, and its unit."""
+    """Column of a table: its index in a row, its name, the concept of the name, and its unit."""
 
     place: int
     label: str
@@ -51,9 +52,9 @@ class Column(NamedTuple):
 
 
 class Table(NamedTuple):
-    """The columns by their meaning, the rows of numbers as text, and how these are written.
+    """Table found in a file: columns by concept, rows of numbers as text, and the decimal mark.
 
-    `shear` says whether the moduli are of shear, None if the names say neither shear nor tension.
+    `shear` is True for shear moduli, False for tensile moduli, and None if neither is stated.
     """
 
     columns: dict[str, Column]
@@ -63,7 +64,7 @@ class Table(NamedTuple):
 
 
 class TableKind(NamedTuple):
-    """What a table is of: the meaning of a name, which columns are kept, and what is wanted."""
+    """Kind of table: concept of a column name, choice of the columns, and words for messages."""
 
     concept: Callable[[str], str]
     needed: Callable[[dict[str, Column]], dict[str, Column]]
@@ -73,21 +74,21 @@ class TableKind(NamedTuple):
 def find_table(
     path: Path, sheet: str | None, longest: int | None = None, kind: TableKind | None = None
 ) -> Table:
-    """Return the first table of a kind, by default of a modulus with its loss over frequency.
+    """Return the first table of a kind, by default storage and loss modulus against frequency.
 
     Parameters
     ----------
     path, sheet
         As for `read_modulus_table`.
     longest
-        How many lines of a text are looked at; all if not given.
+        Number of lines of a text that are inspected; all if not given.
     kind
-        `TableKind`; None is a modulus.
+        Kind of the table; by default a modulus.
 
     Raises
     ------
     ReadError
-        If there is none.
+        If the file contains no such table.
     """
     kind = kind or _MODULUS
     check_regular(path)
@@ -96,18 +97,18 @@ def find_table(
     for rows, decimal in _workbook(path, sheet) if workbook else _text(path, longest):
         for place, row in enumerate(rows[:HEAD]):
             if len(row) > _MAX_COLUMNS or not any(map(str.isalpha, "".join(row))):
-                continue  # a row of numbers names nothing
+                continue  # a row of numbers is no header
             columns = _columns(row, kind)
             seen |= dict.fromkeys(cell.strip() for cell in row if kind.concept(_bare(cell)[0]))
             if needed := kind.needed(columns):
                 return _table_below(rows, place, needed, decimal)
-    # what a file that is no such table holds is not told: it may be anything
+    # the message lists only known names, as the file may contain anything
     names = shown(", ".join(seen), 200) or "none of them"
     raise ReadError(f"{path.name}: columns for {kind.wanted}; it has {names}")
 
 
 def _columns(row: Row, kind: TableKind) -> dict[str, Column]:
-    """Return the first column for each concept that a row names."""
+    """Return the columns that a row of names describes; of several per concept, the first."""
     found: dict[str, Column] = {}
     for place, cell in enumerate(row):
         label, unit = _bare(cell)
@@ -120,7 +121,7 @@ def _columns(row: Row, kind: TableKind) -> dict[str, Column]:
 
 
 def _bare(cell: str) -> tuple[str, str]:
-    """Separate a name from a unit in brackets behind it.
+    """Split a header cell into name and unit; the unit is "" if there is none.
 
     >>> _bare("G' in [Pa]"), _bare('E" (MPa)'), _bare("Tan(delta)"), _bare("E'/MPa")
     (("G'", 'Pa'), ('E"', 'MPa'), ('Tan(delta)', ''), ("E'", 'MPa'))
@@ -147,7 +148,7 @@ _SYMBOLS = ("Ep", "Epp", "Gp", "Gpp")
 
 
 def _concept(label: str) -> str:
-    """Return what of a modulus a name stands for; "" if nothing.
+    """Return the concept of a modulus table that a name means; "" if it means none.
 
     >>> [_concept(label) for label in ("f", 'E"', "G'", "Tan(delta)", "|G*|", "Step time")]
     ['modulus_frequency', 'loss_modulus', 'storage_modulus', 'loss_factor', 'complex_modulus', '']
@@ -167,7 +168,7 @@ def _concept(label: str) -> str:
 
 
 def _needed(columns: dict[str, Column]) -> dict[str, Column]:
-    """Return the columns that make a modulus over frequency, and the temperature; {} if none."""
+    """Return the columns of frequency, moduli and temperature; {} if they are incomplete."""
     frequency = [name for name in ("angular_frequency", "modulus_frequency") if name in columns]
     pair = next((pair for pair in _PAIRS if set(pair) <= set(columns)), ())
     if not frequency or not pair:
@@ -188,7 +189,7 @@ _PAIRS = (
 
 
 def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], dec: str) -> Table:
-    """Return the columns with their units, and all rows of numbers below, also of later blocks."""
+    """Return the table below the names in row `place`, including the rows of later blocks."""
     named, columns = columns, _where_numbers_are(rows, place, columns)
     numeric = [
         n for n in range(place + 1, len(rows)) if numbers_of(rows[n], columns, dec) is not None
@@ -199,7 +200,7 @@ def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], de
     found = {
         concept: column
         if column.unit or named[concept].place >= len(units)
-        # a unit may stand in brackets, or bare
+        # the unit may be in brackets
         else column._replace(unit=units[named[concept].place].strip().strip("[]()").strip())
         for concept, column in columns.items()
     }
@@ -216,7 +217,7 @@ def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], de
 def _where_numbers_are(
     rows: Sequence[Row], place: int, columns: dict[str, Column]
 ) -> dict[str, Column]:
-    """Return the columns one to the left if a word before the names, "Interval data:", has no cell.
+    """Return the columns shifted left if rows have no cell below a leading "Interval data:".
 
     File: an export of RheoCompass whose rows begin with a number (imewei/rheojax).
     """
@@ -230,7 +231,7 @@ _NONE = Column(0, "", "", "")
 
 
 def numbers_of(row: Row, columns: dict[str, Column], decimal: str) -> list[float] | None:
-    """Return the numbers of a row in the order of the columns, or None of another row."""
+    """Return the numbers of a row in the order of the columns; None if a number is missing."""
     result = []
     for concept, column in columns.items():
         cell = row[column.place].strip() if column.place < len(row) else ""
@@ -245,7 +246,7 @@ def numbers_of(row: Row, columns: dict[str, Column], decimal: str) -> list[float
 
 
 def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
-    """Yield the rows of a text for each delimiter that may be its own."""
+    """Yield the rows of a text split at each possible delimiter, with the decimal mark."""
     try:
         raw = path.read_bytes() if longest is None else peek(path).head[: 400 * longest]
     except OSError as error:
@@ -255,7 +256,7 @@ def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
     lines = [_COMMENT.sub("", line) for line in text_of(raw).splitlines()[:longest]]
     lines = _with_names(lines, path.suffix.lower())
     for delimiter in ("\t", ";", ",", "  ", " "):
-        if delimiter.isspace() and delimiter != "\t":  # columns are aligned
+        if delimiter.isspace() and delimiter != "\t":  # aligned columns
             rows = [re.split(rf"\s{{{len(delimiter)},}}", line.strip()) for line in lines]
         else:
             try:
@@ -267,10 +268,10 @@ def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
 
 
 def _with_names(lines: list[str], suffix: str) -> list[str]:
-    """Put the names that two formats keep elsewhere above the numbers.
+    """For two formats without a row of column names, insert the names above the numbers.
 
-    TA Universal Analysis (Q800) lists them as "Sig1<tab>Time (min)" and writes "StartOfData";
-    RepTate's .tts and .osc hold omega [rad/s], G' and G'' [Pa] by its manual.
+    TA Universal Analysis (Q800) lists them as "Sig1<tab>Time (min)" above "StartOfData"; RepTate's
+    .tts and .osc files contain omega [rad/s], G' and G'' [Pa], according to its manual.
     """
     if "StartOfData" in (bare := [line.strip() for line in lines]):
         signals = [_SIGNAL.fullmatch(line) for line in bare]
@@ -291,7 +292,7 @@ _OMEGA_MODULI = ("omega [rad/s]", "G' [Pa]", "G'' [Pa]")
 
 
 def _apart(row: Row) -> Row:
-    """Separate numbers aligned with blanks, which RepTate writes below names between tabs."""
+    """Split a row of numbers at blanks: RepTate has tabs only between names."""
     cells = row[0].split() if len(row) == 1 else row
     return cells if all(map(_NUMBER.fullmatch, cells)) else row
 
@@ -308,7 +309,7 @@ def _workbook(path: Path, sheet: str | None) -> Iterator[tuple[list[Row], str]]:
 def scale_of(
     column: Column, si_unit: str, name: str, stated: str = "", cure: Cure | str = ""
 ) -> float:
-    """Return the factor of a column's numbers to an SI unit.
+    """Return the factor that converts the numbers of a column to an SI unit.
 
     Parameters
     ----------
@@ -319,14 +320,14 @@ def scale_of(
     name
         Name of the file, for messages.
     stated
-        Its unit, if the file states none.
+        Unit to use if the file states none.
     cure
         What to do if no unit is known.
 
     Raises
     ------
     ReadError
-        If its unit is not known, or has another dimension.
+        If the unit of the column is unknown, or has another dimension.
     """
     unit = column.unit if column.unit not in NO_UNIT else stated
     if not unit:

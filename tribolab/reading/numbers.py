@@ -1,4 +1,4 @@
-"""What a number looks like in a text, whatever the language, and the unit behind it."""
+"""Search for numbers in text in any language, with the unit that follows each number."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PER = re.compile(rf"\s?{_A_PER}\s?")
 
 
 class Number(NamedTuple):
-    """A number of a text: its digits, what stands where a unit would, and where both are."""
+    """Number in a text: its digits, the possible unit after them, and start and end of both."""
 
     text: str
     unit: str
@@ -29,17 +29,17 @@ class Number(NamedTuple):
 
     @property
     def stop(self) -> int:
-        """Where its digits end."""
+        """Index in the text at which the digits end."""
         return self.start + len(self.text)
 
     @property
     def value(self) -> float:
-        """The number; NaN if it is none, as 1.234,5."""
+        """The number as a float; NaN if the digits are no number, such as 1.234,5."""
         return decimal(self.text)
 
 
 def decimal(text: str) -> float:
-    """Return the number that digits with a point or a comma stand for; NaN if they are none.
+    """Return text with a decimal point or comma as a float; NaN if it is not a number.
 
     >>> decimal("21,5"), decimal("-4.2e3,"), decimal("1.234,5")
     (21.5, -4200.0, nan)
@@ -52,12 +52,12 @@ def decimal(text: str) -> float:
 
 @functools.lru_cache(maxsize=4096)
 def numbers_in(text: str) -> tuple[Number, ...]:
-    """Return the numbers of a text, each with the word behind it.
+    """Return the numbers in a text, each with the word that follows it.
 
     Parameters
     ----------
     text
-        A line at most: no longer one should be looked at.
+        At most one line.
 
     Examples
     --------
@@ -76,12 +76,12 @@ def numbers_in(text: str) -> tuple[Number, ...]:
 
 
 def escaped(text: str) -> str:
-    """Return text as a readable pattern: blanks remain blanks."""
+    """Return a regular expression for a text, without escaping its blanks."""
     return _SPECIAL.sub(r"\\\1", text).replace("\t", r"\t")
 
 
 def number_pattern(before: str) -> str:
-    """Return a pattern for the number after a line's beginning, in which numbers may vary.
+    """Return a pattern for the number after the text `before`, whose own numbers may vary.
 
     >>> re.search(number_pattern("# cell 2: "), "# cell 3: 4.5 N")[1]
     '4.5'

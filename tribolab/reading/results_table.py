@@ -1,4 +1,4 @@
-"""Tables in which each row is the result of a whole measurement: Ra of scans, peaks of tests."""
+"""Tables with one result per row, such as Ra of a scan or the peak force of a test."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ from typing import NamedTuple
 from tribolab.reading.lexicon.lexicon import Word, known_words, names, normalise_label, role_of
 from tribolab.reading.numbers import PLAIN_NUMBER
 
-_HEAD_LINES = 40  # above such a table
-_MAX_ROWS = 2000  # more are no measurements of a person
+_HEAD_LINES = 40  # lines above such a table
+_MAX_ROWS = 2000  # longer tables are signals
 _MAX_LINE = 2000  # characters; tables of results have few columns
-_MIN_RESULT_NAMES = 2  # names that only results have, or one and the load beside it
-_NUMERIC = 0.5  # of a row's cells
-# parameters of ISO 21920 and ISO 25178, with their unit perhaps
+_MIN_RESULT_NAMES = 2  # different names of results that a table must have
+_NUMERIC = 0.5  # least share of numbers among the cells of a row
+# parameters of ISO 21920 and ISO 25178, perhaps with a unit
 _PARAMETER = re.compile(
     r"[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|dr|Sm|z1max|max|3z|k|pk|vk|pc)\d?\s*(?:[\[(/_ ].{0,12})?"
 )
 _CELLS = re.compile(r"\s*[;\t]\s*|\s*,(?!\d)\s*|\s{2,}")
-_BLANKS = re.compile(r"[^\S\t]{3,}")  # the search for cells takes the square of their number
+_BLANKS = re.compile(r"[^\S\t]{3,}")  # shortened, as the search for cells takes quadratic time
 _COMMAS = re.compile(r"\s*,\s*")
 _LAST_BRACKET = re.compile(r"\s*[\[(][^\[(]*$")
 
 
 class ResultsTable(NamedTuple):
-    """Names of results in a table, and the number of its rows."""
+    """Names of the results in a table, and its number of rows."""
 
     names: list[str]
     rows: int
 
     @property
     def words(self) -> str:
-        """What is said of it."""
+        """Description of the table for messages."""
         return (
             f"a table of results: {', '.join(self.names[:5])} of {self.rows} measurements, a row "
             "each, and neither a profile nor signals along time"
@@ -42,7 +42,7 @@ class ResultsTable(NamedTuple):
 
 
 def find_results_table(text: str) -> ResultsTable | None:
-    r"""Return the table of results that a text is, from its names on to its end; else None.
+    r"""Return the table of results in a text; None if the text is no such table.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def find_results_table(text: str) -> ResultsTable | None:
 
 
 def find_other_test(text: str) -> str:
-    r"""Name the test of a rheometer or DMA that a text holds and that has no friction; "" if none.
+    r"""Return the name of a test without friction (creep, flow curve) that a text contains, or "".
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def find_other_test(text: str) -> str:
                 continue
             found = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
             if {"shear_rate", "viscosity"} <= found:
-                found.discard("normal_stress")  # of the liquid; file: TRIOS, read-rheol
+                found.discard("normal_stress")  # that of the liquid; file: TRIOS, read-rheol
             if _has_moduli(labels, between, lines):
                 return ""
             if found & _OF_FRICTION:
@@ -108,13 +108,13 @@ def find_other_test(text: str) -> str:
 
 
 def _first_lines(text: str, count: int) -> list[str]:
-    """Return the first lines that are not blank, without the blanks around them."""
+    """Return the first `count` lines that are not blank, without surrounding blanks."""
     lines = (line.strip() for line in StringIO(text, newline=None))
     return list(islice(filter(None, lines), count))
 
 
 def _has_moduli(labels: list[str], between: re.Pattern[str], lines: list[str]) -> bool:
-    """Whether columns of storage and loss modulus are named and filled.
+    """Whether a table has columns of storage and loss modulus that contain numbers.
 
     File: a Malvern Kinexus writes the columns of all its tests in each file; those of other tests
     are empty (bsaintmichel/read-rheol).
@@ -145,7 +145,7 @@ _KINETIC = re.compile(r"kinetic|dynamic|gleit|mu_[dk]$", re.IGNORECASE)
 
 
 def _results(labels: list[str]) -> list[str]:
-    """Return the names of results among the names of columns; none of a row of numbers."""
+    """Return the column names that mean results; empty if the table is no table of results."""
     parameters = [label for label in labels if _PARAMETER.fullmatch(label)]
     if len(set(parameters)) >= _MIN_RESULT_NAMES:  # "Pa" twice is a row of units
         return parameters
@@ -174,7 +174,7 @@ def _words() -> dict[str, Word]:
 
 
 def _rows(lines: list[str], between: re.Pattern[str], width: int) -> int:
-    """Return the number of rows, if every line is one of numbers; one of units may come first."""
+    """Return the number of rows if all lines (after one of units) are rows of numbers, else 0."""
     cells = [between.split(line) for line in lines]
     if cells and not any(map(PLAIN_NUMBER.fullmatch, cells[0])):
         cells = cells[1:]

@@ -26,7 +26,7 @@ def read(
     clock_shift: str | float | None = None,
     zero: str | None = None,
     moving_mass: str | float | None = None,
-) -> Any: ...  # one run, or a list: a type checker does not know patterns from names
+) -> Any: ...  # one run, or a list: a type checker cannot tell patterns from names
 
 
 @overload

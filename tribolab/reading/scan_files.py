@@ -1,4 +1,4 @@
-"""Read scans of any instrument; a text file of an unknown one is described by its own header."""
+"""Reading of scans of any instrument; for text of an unknown one, a dialect is drafted."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def read_scans(
     height_unit: str | None = None,
     stack: bool = True,
 ) -> xr.Dataset | list[xr.Dataset]:
-    r"""Read scans of one surface; text of an unknown instrument according to its header.
+    r"""Read scans of one surface, from files of known instruments or text with a clear header.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, 
 
 
 def file_of(trace: Path) -> Path:
-    """Return the file that contains a trace of `read_traces`.
+    """Return the path of the file that contains a trace, from the trace's key in `read_traces`.
 
     >>> file_of(Path("line.txt, trace 2")).name, file_of(Path("line.txt")).name
     ('line.txt', 'line.txt')
@@ -194,7 +194,7 @@ def _doubted(scan: xr.Dataset, doubt: str) -> xr.Dataset:
 
 
 def _drafted(file: Path, error: ReadError) -> Dialect | None:
-    """Return the dialect that a file's header makes of a scan; None if it is none."""
+    """Return the dialect drafted from the file of a scan; None if the file is no scan."""
     draft = draft_of(file)
     if draft is None or draft.known or is_own_text(file):
         return None

@@ -1,4 +1,4 @@
-"""Where the descriptions of raw data live: beside the package, or in a wheel inside it."""
+"""Location of the folder raw_data_schema: next to the package, or inside it in a wheel."""
 
 from __future__ import annotations
 

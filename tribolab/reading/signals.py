@@ -1,4 +1,4 @@
-"""Signals of a run as arrays, before it becomes a dataset: for whoever is to answer at once."""
+"""Signals of a run as arrays, which are available sooner than a dataset."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Signals(NamedTuple):
 
 
 def dataset_of(signals: Signals) -> xr.Dataset:
-    """Make a run of its signals: dim ``time``, with units and names on every variable.
+    """Return signals as a dataset with dim ``time``, and units and names on every variable.
 
     Examples
     --------
@@ -29,12 +29,12 @@ def dataset_of(signals: Signals) -> xr.Dataset:
     >>> run["normal_force"].attrs["units"]
     'N'
     """
-    # late: pandas and xarray take longer to load than a file of 5 MB to read
+    # imported late: pandas and xarray take longer to load than a file of 5 MB takes to read
     import pandas as pd
     import xarray as xr
     from xarray.indexes import PandasIndex
 
-    # late: it is about datasets
+    # imported late, as it imports xarray
     from tribolab.units.stamping import stamp
 
     return stamp(
@@ -49,6 +49,6 @@ def dataset_of(signals: Signals) -> xr.Dataset:
 
 
 def signals_of(run: xr.Dataset) -> Signals:
-    """Return the signals of a run (time)."""
+    """Return the signals of a dataset as arrays."""
     columns = {str(name): run[name].to_numpy() for name in run.data_vars}
     return Signals(run["time"].to_numpy(), columns, dict(run.attrs))

@@ -1,4 +1,4 @@
-"""Recognition of texts that are units, also at the end of keys: "contact_radius_mm"."""
+"""Recognition of units in text, also at the end of keys: "contact_radius_mm"."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def is_turns(unit: str) -> bool:
 
 
 def is_per_minute(unit: str) -> bool:
-    """Whether a unit counts something per minute.
+    """Whether a unit is a number per minute, such as revolutions or 1/min.
 
     >>> is_per_minute("1/min"), is_per_minute("rev/s")
     (True, False)
@@ -56,14 +56,14 @@ def is_unit(text: str) -> bool:
 
 
 def measures_something(text: str) -> bool:
-    """Whether a text in brackets is a unit of any quantity, and so that of the column.
+    """Whether a text in brackets is a unit of any quantity, recorded by tribolab or not.
 
     >>> measures_something("mm³"), measures_something("N"), measures_something("left")
     (True, True, False)
     """
     if is_unit(text):
         return True
-    letter = len(text) == 1 and text.isascii()  # more likely a channel than amperes
+    letter = len(text) == 1 and text.isascii()  # "A" is more likely a channel than amperes
     return not letter and any(converts(text, dimension) for dimension in _FURTHER)
 
 
@@ -88,7 +88,7 @@ _NO_UNIT = frozenset(("percent", "%", "-", "1"))
 
 
 def is_unit_of_key(text: str) -> bool:
-    """Whether a text is a unit of a recorded quantity.
+    """Whether the last part of a key, such as "mm" in "radius_mm", is a unit.
 
     >>> is_unit_of_key("mm/s"), is_unit_of_key("degC"), is_unit_of_key("raw"), is_unit_of_key("3")
     (True, True, False, False)

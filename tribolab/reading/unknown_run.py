@@ -59,9 +59,8 @@ def read_run(
     xarray.Dataset
         As from `tribolab.read`. Attributes of a drafted description: ``instrument`` states that
         it is drafted, ``to_keep_it`` how to store it, ``without_unit`` lists lines that are not
-        used as they lack a unit, ``left_out`` doubtful columns that are not needed,
-        and ``drafted_layout`` a
-        checksum that files of one layout share.
+        used as they lack a unit, ``left_out`` doubtful columns that are not needed, and
+        ``drafted_layout`` is a checksum that files of one layout share.
 
     Raises
     ------

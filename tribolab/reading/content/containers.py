@@ -23,14 +23,14 @@ from tribolab.units.conversion import conversion
 
 
 def read_columns(path: Path, dialect: Dialect) -> Content:
-    """Read the columns of a file that names them.
+    """Read a run from a file with named columns, such as HDF5, TDMS or a workbook.
 
     Parameters
     ----------
     path
         The file.
     dialect
-        Its format, and which column is which quantity.
+        Format of the file, and the quantity of each column.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def _resolved(path: Path, table: RawTable, dialect: Dialect) -> tuple[list[ReadC
 
 
 def _one_clock(path: Path, table: RawTable, signals: list[ReadColumn]) -> OneClock | None:
-    """Return the signals at the times of the friction signal, else of the fastest one."""
+    """Return the signals at the times of the friction signal, or else of the fastest signal."""
     names = [signal.quantity.split(AGAIN)[0] for signal in signals]
     lead = next((names.index(name) for name in FRICTION_SIGNALS if name in names), None)
     try:
@@ -108,7 +108,7 @@ def _scaled(path: Path, signal: ReadColumn, values: np.ndarray) -> np.ndarray:
     if values.dtype.kind not in "fiub":
         odd = f": '{shown(str(values[0]), 40)}' is not one" if values.size else ""
         raise ReadError(f"column '{shown(signal.label)}' holds no numbers{odd}", where=path)
-    with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may have any value
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged files may contain any number
         return np.asarray(values, dtype=float) * signal.scale + signal.offset
 
 
@@ -126,7 +126,7 @@ def seconds_of(values: np.ndarray) -> np.ndarray:
 def _marked_steps(
     path: Path, file: RawFile, time: np.ndarray, marks: Marks
 ) -> tuple[np.ndarray, dict[str, str]]:
-    """Return the step number over time: step k lasts from mark k to k + 1; 0 before mark 1."""
+    """Return the step number of each row, and notes; step k lasts from mark k to mark k + 1."""
     table = next((table for table in file.tables if table.name == marks.group), None)
     clocks: list[RawColumn] = [] if table is None else list(table.columns)
     clocks = [column for column in clocks if split_name(column.label)[0] == marks.time]

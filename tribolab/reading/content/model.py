@@ -1,4 +1,4 @@
-"""Pieces of a run in one file, and information on the file."""
+"""Content of one raw file: its tables, and information on the file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 
 class Piece(NamedTuple):
-    """One table: arrays in SI by quantity, and the text before it."""
+    """One table of a raw file: arrays in SI units by quantity, and the text before the table."""
 
     columns: dict[str, np.ndarray]
     step: int | None = None
@@ -20,15 +20,15 @@ class Piece(NamedTuple):
 
 
 class Content(NamedTuple):
-    """Content of one file."""
+    """Content of one raw file; `pieces` are its tables."""
 
     path: Path
     sha256: str
     pieces: list[Piece]
     labels: Mapping[str, str]
     not_used: tuple[str, ...]
-    left_out: Mapping[str, int] = {}  # rows left out, by reason
+    left_out: Mapping[str, int] = {}  # number of rows left out, by reason
     notes: Mapping[str, str] = {}
-    symbols: Mapping[str, str] = {}  # SI units of columns used only in formulas
+    symbols: Mapping[str, str] = {}  # SI units of columns that are used only in formulas
     scales: Mapping[str, tuple[float, float]] = {}  # conversion to SI by column: scale and offset
-    foot: str = ""  # text below the table of a file that begins with the table
+    foot: str = ""  # text below the table, if the file begins with the table

@@ -21,13 +21,13 @@ from tribolab.reading.raw.missing_marks import beyond_range, measurable, take_ma
 from tribolab.reading.text.first_bytes import File, fits_format, peek
 
 _T = TypeVar("_T")
-_UNCLEAR = 0.5  # largest ratio of values of the other sign in a load of known sign
+_UNCLEAR = 0.5  # smaller over larger extreme of both signs; above it, the sign of a load is unknown
 _PLACES = ("x", "y")  # coordinates of a scan, checked by `scan_grid`
-_OF_NAMES = 3  # most lines of names and units at the start of a table
+_OF_NAMES = 3  # largest number of lines before the numbers if there is no preamble
 
 
 def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
-    """Read one raw file.
+    """Read one raw file with the dialect of its instrument.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def _no_value(values: np.ndarray) -> bool:
 
 
 def _clean(content: Content, dialect: Dialect) -> Content:
-    """Remove optional columns without values; raise if another column has none."""
+    """Remove sentinels, impossible numbers and empty optional columns; set the sign of the load."""
     content = _orient_load(_choose_columns(_remove_impossible(_remove_sentinels(content))), dialect)
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
@@ -150,7 +150,7 @@ def _clean(content: Content, dialect: Dialect) -> Content:
 
 
 def _orient_load(content: Content, dialect: Dialect) -> Content:
-    """Make a load of unknown sign positive where it is largest."""
+    """Set the sign of a load of unknown sign such that its largest magnitude is positive."""
     if not any(column.sign == "pressed" for column in dialect.column):
         return content
     parts = [p.columns["normal_force"] for p in content.pieces if "normal_force" in p.columns]
@@ -175,7 +175,7 @@ def _orient_load(content: Content, dialect: Dialect) -> Content:
 
 
 def _choose_columns(content: Content) -> Content:
-    """Of several columns for one quantity, keep the first that is filled."""
+    """Keep only the first filled column of several columns for one quantity."""
     keys = dict.fromkeys(key for piece in content.pieces for key in piece.columns)
     parts = {
         key: [piece.columns[key] for piece in content.pieces if key in piece.columns]
@@ -200,7 +200,7 @@ def _renamed(columns: Mapping[str, _T], chosen: Mapping[str, str]) -> dict[str, 
 
 
 def _remove_sentinels(content: Content) -> Content:
-    """Replace sentinels by NaN, and note them."""
+    """Replace sentinels (no-data values) by NaN, and note them."""
     marks_text = []
     for name in dict.fromkeys(name for piece in content.pieces for name in piece.columns):
         if name in ("time", *_PLACES):
@@ -223,7 +223,7 @@ def _remove_impossible(content: Content) -> Content:
         for name, values in columns.items():
             if name in _PLACES or values.dtype.kind != "f":
                 continue
-            if name == "time":  # refused later, when the clock is set
+            if name == "time":  # an error follows later, when the clock is evaluated
                 columns[name] = _limit_times(values)
                 continue
             columns[name] = measurable(values)
@@ -240,7 +240,7 @@ def _remove_impossible(content: Content) -> Content:
 
 
 def _limit_times(values: np.ndarray) -> np.ndarray:
-    """Replace times beyond the range of any clock by infinity."""
+    """Replace times that no clock can show by infinity."""
     if not anywhere(beyond_range, values):
         return values
     return np.where(beyond_range(values), np.inf, values)

@@ -1,4 +1,4 @@
-"""What the text before a table states of its step and sampling, and the order of its rows."""
+"""Start time and sampling that the text before a table states, and the order of its rows."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from tribolab.units.conversion import positive
 
 
 def last_match(pattern: str, text: str) -> str | None:
-    """Return group 1 of a pattern's last match: a step's own text takes precedence."""
+    """Return group 1 of the last match: the text next to a step precedes that at the top."""
     return guarded(pattern).last(text)
 
 
 def started(text: str, path: Path, dialect: Dialect) -> dt.datetime | None:
-    """Return the start time of a step, if the text before it states one."""
+    """Return the start time of a table, if the text before the table states one."""
     time = dialect.time
     if time.start_pattern is None or time.start_format is None:
         return None
@@ -43,21 +43,21 @@ _COMMA = re.compile(r"\d+,\d+(?:[eE][-+]?\d+)?")
 
 
 def stated_interval(content: Content, dialect: Dialect, piece: Piece) -> float:
-    """Return the sampling interval [s]; 1 s if nothing is stated.
+    """Return the sampling interval [s] from the dialect or the file; 1 s if none is stated.
 
     Parameters
     ----------
     content
         The file, whose preamble may state the rate or interval.
     dialect
-        The dialect, which states the value or its place.
+        The dialect, which states the value or the pattern that finds it.
     piece
         One of its tables: the text before it takes precedence over the preamble.
 
     Raises
     ------
     ReadError
-        If it is missing, or is neither a rate nor an interval.
+        If the value is missing from the file, or is neither a rate nor an interval.
     """
     stated = _stated(content, dialect, piece)
     return sampling_interval(stated, _where(content, dialect)) if stated else 1.0
@@ -74,7 +74,7 @@ def stated_pace(content: Content, dialect: Dialect) -> float:
     Raises
     ------
     ReadError
-        If it is missing, or is not a speed.
+        If the speed is missing, or its unit is not one of speed.
     """
     return positive(_stated(content, dialect, content.pieces[0]), "m/s", _where(content, dialect))
 
@@ -84,7 +84,7 @@ def _where(content: Content, dialect: Dialect) -> str:
 
 
 def _stated(content: Content, dialect: Dialect, piece: Piece) -> str:
-    """Return the rate or interval of the dialect or the file, with its unit; "" without one."""
+    """Return the stated rate, interval or speed with its unit, from dialect or file; else ""."""
     rule = dialect.time
     if rule.rate or not rule.rate_pattern:
         return rule.rate or ""
@@ -118,7 +118,7 @@ def is_newest_first(time: np.ndarray) -> bool:
 
 
 def oldest_first(content: Content) -> Content:
-    """Return a file with its single table in order of time, with a note if it was reversed."""
+    """Return the content with its only table in order of time, with a note if it was reversed."""
     if len(content.pieces) != 1 or not is_newest_first(content.pieces[0].columns["time"]):
         return content
     [piece] = content.pieces

@@ -16,14 +16,14 @@ from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.units.conversion import conversion, to_si
 
-# 21,5 in the preamble of a table with decimal points; 1,200 is ambiguous and is asked about
+# a decimal comma (21,5) above a table with decimal points; 1,200 is ambiguous and does not match
 _OWN_COMMA = re.compile(r"[-+]?(?:\d+,\d{1,2}|\d+,\d{4,}|0,\d+)(?:[eE][-+]?\d+)?")
 
 _OF_NAME = re.compile(r"(?<=\d)[,pP_](?=\d)")
 
 
 def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
-    """Return attributes from the preamble and the file name, with their unit in the name.
+    """Return values from the preamble and the file name as attributes named with their unit.
 
     Raises
     ------
@@ -45,10 +45,7 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
 
 
 def add_assumed(attrs: Json, dialect: Dialect) -> list[Value]:
-    """Add default values of the dialect that the file does not state.
-
-    Returns the added values, for `tell_assumed`.
-    """
+    """Add default values from the dialect for what the file does not state; return them."""
     lost = [v for v in dialect.value if v.default is not None and v.attribute not in attrs]
     for value in lost:
         attrs[value.attribute] = to_si(str(value.default), value.si_unit, value.name)
@@ -56,7 +53,7 @@ def add_assumed(attrs: Json, dialect: Dialect) -> list[Value]:
 
 
 def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
-    """Record in ``assumed`` the default values on which results depend."""
+    """Store in the attribute ``assumed`` the default values on which results depend."""
     used = set(dialect.speed.values_named.values())
     for formula in attrs.get("derived", {}).values():
         used |= names_in(parse_formula(formula))
@@ -65,9 +62,9 @@ def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
 
 
 def _check_later_tables(text: str, value: Value, content: Content, dialect: Dialect) -> None:
-    """Raise if the text before a later table states another value of an input."""
-    reckoned = value.name in dialect.values_used
-    if value.source != "preamble" or value.pattern is None or not reckoned:
+    """Raise if the text before a later table states another value that formulas use."""
+    used = value.name in dialect.values_used
+    if value.source != "preamble" or value.pattern is None or not used:
         return
     for piece in content.pieces[1:]:
         later = last_match(value.pattern, piece.before)
@@ -82,9 +79,9 @@ def _check_later_tables(text: str, value: Value, content: Content, dialect: Dial
 def step_values(
     contents: list[Content], dialect: Dialect
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Return the values of each step: numbers as variables over time, texts as attributes.
+    """Return the values stated for each step: numbers per row as variables, texts as attributes.
 
-    A number whose name is not a quantity is used in formulas only.
+    Numbers whose name is not a quantity are used only in formulas.
     """
     variables: dict[str, np.ndarray] = {}
     attrs: dict[str, str] = {}
@@ -108,7 +105,7 @@ def step_values(
 
 
 def _number(text: str, decimal: str) -> float:
-    """Return a number in the table's notation, or with its own decimal comma."""
+    """Return the number in a text with the decimal mark of the table, or with a decimal comma."""
     if decimal == "." and _OWN_COMMA.fullmatch(text):
         decimal = ","
     return float(text.replace(decimal, "."))
@@ -119,7 +116,7 @@ def _first_match(pattern: str, text: str) -> str | None:
 
 
 def converted(text: str, value: Value, content: Content, dialect: Dialect) -> str | float:
-    """Return the number in a text, in the SI unit of its value; text without a unit is unchanged.
+    """Return the value in a text as a number in SI units, or as text if the value has no unit.
 
     Parameters
     ----------

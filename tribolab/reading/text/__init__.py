@@ -1,1 +1,1 @@
-"""Text format before any dialect: encoding, arrangement, cells, numbers."""
+"""Format of text files, for files of any instrument: encoding, cells, dates, numbers."""

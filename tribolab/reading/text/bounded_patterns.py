@@ -12,8 +12,8 @@ import regex
 from tribolab.core.errors import ReadError, shown
 
 MAX_PATTERN = 1000  # characters of a pattern
-_SECONDS = 2.0  # time limit for a short text, and for each further _AMOUNT
-_AMOUNT = 1 << 22
+_SECONDS = 2.0  # time limit per _AMOUNT of text, and for any shorter text
+_AMOUNT = 1 << 22  # characters or bytes
 
 
 class PatternError(ValueError):
@@ -55,7 +55,7 @@ class Guarded(Generic[AnyStr]):
 
     @property
     def groups(self) -> int:
-        """Number of its groups."""
+        """Number of groups in the expression."""
         return int(self._compiled.groups)
 
     def search(
@@ -66,7 +66,7 @@ class Guarded(Generic[AnyStr]):
         Raises
         ------
         ReadError
-            If it exceeds the time limit for the text.
+            If the search exceeds the time limit for the text.
         """
         stop = len(text) if stop is None else stop
         try:
@@ -113,7 +113,7 @@ class Guarded(Generic[AnyStr]):
 
 @functools.lru_cache(maxsize=256)
 def guarded(pattern: str) -> Guarded[str]:
-    """Return a pattern for text, compiled once."""
+    """Return a pattern for text, compiled at its first use only."""
     return Guarded(pattern)
 
 

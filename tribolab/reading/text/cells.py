@@ -6,7 +6,7 @@ import re
 
 
 def split_name(text: str) -> tuple[str, str | None]:
-    """Split a header's name and the unit in brackets.
+    """Split a header cell into the name and the unit in brackets (None without a unit).
 
     >>> split_name("Fx [N]")
     ('Fx', 'N')

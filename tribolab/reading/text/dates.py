@@ -1,4 +1,4 @@
-"""Dates and times in columns, and clocks that count from an epoch."""
+"""Dates and times in columns, and epochs from which clocks count."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def seconds(texts: Iterable[object], form: str, missing: Collection[str] = ()) -
     Raises
     ------
     ValueError
-        With the first text in another form.
+        With the first text that has another format as its message.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def seconds(texts: Iterable[object], form: str, missing: Collection[str] = ()) -
 
 
 def is_form(text: str) -> bool:
-    """Whether a text is a form of dates and times.
+    """Whether a text is a format of dates and times.
 
     >>> is_form("iso"), is_form("%d.%m.%Y %H:%M:%S"), is_form("dd.mm.yyyy")
     (True, True, False)
@@ -76,7 +76,7 @@ def is_form(text: str) -> bool:
 
 
 def has_day(form: str) -> bool:
-    """Whether a form includes the date, not only the time of day.
+    """Whether a format includes the date, not only the time of day.
 
     >>> has_day("iso"), has_day("%H:%M:%S")
     (True, False)
@@ -85,7 +85,7 @@ def has_day(form: str) -> bool:
 
 
 def has_zone(form: str) -> bool:
-    """Whether times include a zone.
+    """Whether a format includes the time zone.
 
     >>> has_zone("iso with zone"), has_zone("iso")
     (True, False)
@@ -94,12 +94,12 @@ def has_zone(form: str) -> bool:
 
 
 def date_of(epoch: Epoch, since: float) -> dt.datetime:
-    """Return the date and time so many seconds after an epoch, to the microsecond.
+    """Return the date and time `since` seconds after an epoch, to the microsecond.
 
     Raises
     ------
     OverflowError
-        If it is beyond the range of dates.
+        If the result is beyond the range of dates.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Refusal of text with endless rows or header before any reader searches for tables."""
+"""Check for text with far too long rows or header, before any reader searches for tables."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def refuse_endless(path: Path, head: bytes, size: int) -> None:
     Raises
     ------
     RefusedError
-        If two lines, or one longer than the head, have more cells than a map, or if the head of a
-        longer file has no row of numbers.
+        If two lines (or one that exceeds the head) have more cells than any map, or if the head
+        of a longer file has no row of numbers.
     """
     letters = np.frombuffer(head, dtype=np.uint8)
     ends = np.flatnonzero(letters == ord("\n"))

@@ -1,4 +1,4 @@
-"""First inspection of a file: existence, and text or binary format."""
+"""First inspection of a file: whether it can be read, and its format."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ _COMPATIBLE_FORMATS = {
     ("text", "binary"),
     ("text", "json"),
     ("text", "declared records"),
-}  # other formats that a file may match
+}  # formats of file and dialect that differ, but are compatible
 _FOREIGN = {b"PK\x03\x04": "a zip or Office file; export a table as text (csv)", b"%PDF": "a PDF"}
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
-_WIDE_HEAD = 4096  # bytes sufficient to recognise wide characters
+_WIDE_HEAD = 4096  # bytes that suffice to recognise two-byte characters
 _MIN_BYTES = 64
 
 
@@ -59,10 +59,7 @@ class File(NamedTuple):
 
     @property
     def container(self) -> str:
-        """Format with named columns: that of the file, JSON, or binary records; "" for text lines.
-
-        Binary records follow a text that declares them.
-        """
+        """Format with named columns, also JSON and records declared in text; "" for other text."""
         if self.format != "text":
             return self.format
         if _is_json(self.head):
@@ -120,7 +117,7 @@ def _seen(path: Path, binary: bool, _: Identity | None) -> File:
     return found
 
 
-_seen_at_rest = functools.lru_cache(maxsize=4)(_seen)  # inspected several times per reading
+_seen_at_rest = functools.lru_cache(maxsize=4)(_seen)  # files are inspected repeatedly
 
 
 def wide_encoding(head: bytes) -> str:
@@ -160,7 +157,7 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     )
 
 
-_MAX_JSON = 1 << 28  # bytes; it is read as a whole
+_MAX_JSON = 1 << 28  # bytes, as a JSON file is read as a whole
 
 
 def _is_json(head: bytes) -> bool:
@@ -170,7 +167,7 @@ def _is_json(head: bytes) -> bool:
     text = head.decode("utf-8-sig", errors="replace").lstrip()
     try:
         end = json.JSONDecoder().raw_decode(text)[1]
-    except (ValueError, RecursionError):  # it continues beyond the head, or is nested too deeply
+    except (ValueError, RecursionError):  # the JSON text exceeds the head, or is nested too deeply
         return True
     return not text[end:].strip(" \t\r\n,") or text[end:].lstrip()[0] in "{[,"
 
@@ -239,7 +236,7 @@ _MIN_LINES, _MAX_LINES = 3, 200  # smallest and largest number of result lines
 
 
 def is_results(head: bytes) -> bool:
-    """Whether a file begins like results of a roughness tester or a results table."""
+    """Whether the first bytes of a file look like test results instead of signals."""
     return results_error(head, Path()) is not None
 
 
@@ -260,7 +257,7 @@ def results_error(head: bytes, where: Path) -> ReadError | None:
 
 
 def text_of(raw: bytes) -> str:
-    """Return text of two-byte characters, of UTF-8, or else of Western Europe."""
+    """Decode bytes as UTF-16 if they look like it, else as UTF-8 or Windows-1252."""
     if wide := wide_encoding(raw):
         return raw.decode(wide, errors="replace").removeprefix("\ufeff")
     try:
@@ -276,9 +273,9 @@ def is_surftest_results(head: bytes) -> bool:
 
 
 def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
-    r"""Return lines of roughness parameters: number from 1, with name, value and unit.
+    r"""Return the roughness parameters in a text: line number from 1, and name, value, unit.
 
-    Empty if most lines are something else, e.g. a profile below its results.
+    The list is empty if most lines are something else, e.g. a profile below its results.
 
     Examples
     --------

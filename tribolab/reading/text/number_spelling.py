@@ -1,4 +1,4 @@
-"""Rare number notations: −1.5 with a true minus sign, 1.5D-03, "1,5" in quotes, 1.234,5."""
+"""Unusual notations of numbers: −1.5 with a true minus sign, 1.5D-03, "1,5" in quotes, 1.234,5."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _units_to_names(text: str, first: re.Match[str]) -> str:
 
 
 def _without_units(cells: list[str], units: list[str]) -> list[str]:
-    """Return cells without the unit of their column."""
+    """Return the cells of a row with the unit of each column removed."""
     if len(cells) != len(units):
         return cells
     matches = ((cell, _CELL.fullmatch(cell), unit) for cell, unit in zip(cells, units, strict=True))
@@ -81,7 +81,7 @@ def _without_units(cells: list[str], units: list[str]) -> list[str]:
 
 
 def has_commas_in_quotes(text: str) -> bool:
-    """Whether commas separate cells and are also decimal marks of quoted numbers.
+    """Whether commas separate cells, and quoted numbers have decimal commas.
 
     >>> has_commas_in_quotes('"0,01","1,5"'), has_commas_in_quotes('"a, b",1.5')
     (True, False)
@@ -102,8 +102,8 @@ Mark = Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"]
 _MARKS: tuple[Mark, ...] = (".", ",", "'", " ", "\u00a0", "\u202f")
 _ROWS = 4000  # most lines inspected
 _NUMBER = re.compile(r"\s*[+-]?\d[\d.,]*\s*")
-_APART = "\t;"  # delimiters that are unambiguous with any separator
-_BLANK = r"[^\S\t\n]"  # within a cell, so that a search passes a row of empty cells only once
+_APART = "\t;"  # delimiters that are no thousands separators
+_BLANK = r"[^\S\t\n]"  # a blank in a cell, no tab: a search scans a row of empty cells only once
 # patterns of numbers with both marks, and of integers with separators only
 _BOTH = re.compile(rf"\d[{''.join(_MARKS)}]\d{{3}}[.,]\d")
 _WHOLE = re.compile(
@@ -112,7 +112,7 @@ _WHOLE = re.compile(
 
 
 def find_thousands(lines: Sequence[str]) -> Mark:
-    """Return the thousands separator; "" if no number proves one.
+    """Return the thousands separator of the numbers in lines; "" if no number proves one.
 
     Parameters
     ----------
@@ -142,9 +142,9 @@ def find_thousands(lines: Sequence[str]) -> Mark:
 
 
 def _separator_of_integers(lines: Sequence[str]) -> Mark:
-    """Return the separator of integers if other numbers use the other mark for decimals.
+    """Return the thousands separator of integers if other numbers have the other mark, else "".
 
-    1.234 in a column with 987, and in a table with 0,25, does not have three decimals.
+    Example: 1.234 is an integer if its column contains 987 and the table contains 0,25.
     """
     columns: dict[int, set[str]] = {}
     for line in lines:

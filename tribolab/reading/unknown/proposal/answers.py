@@ -72,7 +72,8 @@ def corrected(
         if column.place == place:
             columns.append(_as_described(column, Worth(name, unit or "", scale), sign, draft))
         elif name == "x" and column.quantity == "y" and unit and column.guessed:
-            columns.append(column._replace(unit=unit, guessed=(), options=()))  # as x
+            # y of a map has the unit of x
+            columns.append(column._replace(unit=unit, guessed=(), options=()))
         elif name in (column.quantity, column.said):
             note = "not this quantity, as was said"
             columns.append(
