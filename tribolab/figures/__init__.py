@@ -1,1 +1,1 @@
-"""Figures, one description per subject, drawn for publications and for the report page."""
+"""Figures: described once per subject, then drawn for publications or for the report page."""

@@ -1,4 +1,4 @@
-"""Initial range and ticks of an axis, equal to those of `assets/chart.js`."""
+"""Initial range and ticks of an axis; the script `assets/chart.js` computes the same."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from dataclasses import dataclass, replace
 
 from tribolab.figures.spec import Axis, Panel, Series
 
-_ROOM = 0.06  # margin on either side, as share of the axis range
-_EQUAL_WITHIN = 1e-5  # relative difference, or decades, below which values are equal
+_ROOM = 0.06  # margin at each end of an axis, as share of the range of the data
+_EQUAL_WITHIN = 1e-5  # values are equal if they differ by less: relative, or in decades if log
 _LEAST_DECADES = 0.1  # smallest range of a logarithmic axis, in decades
-_LOW_ENDS = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)  # times a power of ten
+_LOW_ENDS = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)  # low ends of log axes, times 10^n
 _LEAST_SHARE = 0.02  # smallest range of a linear axis, as share of the largest value
-_BELOW = 20  # error bars extend a logarithmic axis at most down to the value divided by this
+_BELOW = 20  # error bars extend a log axis down to a point's value divided by this, no further
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Visible range of an axis; on a logarithmic axis the logarithms of its ends.
+    """Visible range of an axis, from `low` to `high`; on a log axis, their decimal logarithms.
 
-    `names` are the rows of a categorical axis, lowest first; empty for an axis of numbers.
+    `names` are the texts along a categorical axis, from below; empty for an axis of numbers.
     """
 
     low: float
@@ -29,7 +29,10 @@ class Scale:
     names: tuple[str, ...] = ()
 
     def place(self, value: object) -> float | None:
-        """Return the position of a value on the axis, from 0 (low end) to 1 (high end), or None."""
+        """Return the position of a value along the axis, 0 at its low end and 1 at its high end.
+
+        None if the value is not a finite number, not positive on a log axis, or an unknown name.
+        """
         if self.names:
             known = isinstance(value, str) and value in self.names
             return self._share(self.names.index(str(value))) if known else None

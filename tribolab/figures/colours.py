@@ -1,4 +1,4 @@
-"""Colour and marker of each surface, equal in all figures and on the page."""
+"""Colours, markers and line styles, the same in all figures and on the page."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tribolab.figures.spec import Style
 # Palette of Okabe and Ito, distinguishable with any common colour deficiency (Color Universal
 # Design, 2008). `assets/drawing.js` and `still.css` contain it too, with dark variants.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#6B6B6B", "#000000")
-MARKERS = ("o", "s", "D", "^", "v", "p", "h", "*")  # one per colour; for loads, one per rank
+MARKERS = ("o", "s", "D", "^", "v", "p", "h", "*")  # one per colour, or one per load
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY, BLACK = range(8)
 # colours of the reference study: Smooth green, Sb-S blue, Sb-R red
 _REFERENCE = {"smooth": GREEN, "sb-s": BLUE, "sb-r": VERMILLION}
@@ -19,7 +19,7 @@ _DARKEST, _LIGHTEST = -0.35, 0.45  # share of black (negative) or white in the s
 
 
 def surface_colours(surfaces: Iterable[str]) -> dict[str, int]:
-    """Return the palette index of each surface, in the order given.
+    """Return the index in the palette for each surface, in order of first appearance.
 
     The surfaces of the reference study keep the colours of the paper.
 
@@ -29,7 +29,7 @@ def surface_colours(surfaces: Iterable[str]) -> dict[str, int]:
     ({'steel': 0, 'brass': 1}, {'Sb-R': 1, 'steel': 0})
     """
     names = list(dict.fromkeys(surfaces))
-    # text in brackets after a surface's name does not change its colour
+    # "Sb-R (complete contact)" has the colour of Sb-R
     bare = {name: name.partition(" (")[0].strip().lower() for name in names}
     fixed = {name: _REFERENCE[bare[name]] for name in names if bare[name] in _REFERENCE}
     free = [place for place in _ORDER if place not in fixed.values()] or list(_ORDER)
@@ -39,7 +39,7 @@ def surface_colours(surfaces: Iterable[str]) -> dict[str, int]:
 
 
 def shade_of(rank: int, count: int) -> float:
-    """Return the shade of the `rank`-th of `count` loads: dark for the lowest; 0 for a single load.
+    """Return the shade of a load by its rank (from 0): dark (< 0) if low, light (> 0) if high.
 
     Examples
     --------

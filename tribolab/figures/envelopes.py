@@ -1,4 +1,4 @@
-"""Reduction of a long trace to few points that keep its spikes."""
+"""Reduction of long traces to few points: extremes of noisy ones, every n-th of smooth ones."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from tribolab.arrays.chunks import whole_blocks
 
 
 def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Return the smallest and largest point of a trace in each pixel column.
+    """Reduce a trace to its smallest and largest point in each pixel column.
 
     Parameters
     ----------
     x
-        Abscissa, never decreasing, without NaN (n).
+        Abscissa (point), never decreasing, without NaN.
     y
-        Ordinate (n); NaN is a gap.
+        Ordinate (point); NaN is a gap.
     columns
         Number of pixel columns over the whole range of `x`.
 
     Returns
     -------
     x, y
-        Points of the trace in order, at most two per column; a column of NaN keeps one NaN as a
-        gap. A short trace is returned unchanged.
+        Points of the trace in order, at most two per column. A column with only NaN keeps one, as a
+        gap. A short trace is unchanged.
 
     Notes
     -----
-    Means or strides would lose single-sample spikes or show them by chance (aliasing); the extremes
-    of every column cover the same area as a plot of all points.
+    Means would lose spikes of a single sample; every n-th point would show them only by chance. The
+    extremes of each column cover the same area as a plot of all points.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def extremes_index(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 
 def thinned(count: int, most: int = 400) -> np.ndarray:
-    """Return evenly spaced indices that thin out a long smooth curve, including both ends.
+    """Return the indices of at most `most` evenly spaced points of a curve, with both ends.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 
 def _first_at(y: np.ndarray, level: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return the first index in each column where y equals its level, else the column's first."""
+    """Return for each column the first index at which y equals a level, e.g. its maximum."""
     hits = np.append(np.flatnonzero(y == np.repeat(level, ends - starts)), y.size)
     first = hits[np.searchsorted(hits, starts)]
     return np.where(first < ends, first, starts)  # NaN equals nothing, so the first index is used

@@ -1,4 +1,4 @@
-"""Several results of one kind, labelled by surface, run or condition."""
+"""Arguments of figures with several results: a mapping, a list, or a dataset with more dims."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ OneOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]
 def by_label(
     results: OneOrSeveral, labels: Mapping[str, Sequence[RunLabel]], known: str
 ) -> dict[str, xr.Dataset]:
-    """Return results by their labels.
+    """Return several results as a dictionary by label, however they are given.
 
     Parameters
     ----------
     results
-        Results by label; or one result, also over further dims; or a list of results.
+        Results by label; or one result, perhaps with further dims; or a list of results.
     labels
-        Labels of the results in a list, one for each; by default their numbers.
+        For a list: label of each result, by kind of label; by default they are numbered.
     known
         The dim of a single result.
 
@@ -55,12 +55,12 @@ def by_label(
 
 
 def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
-    """Return the parts of a dataset along its extra dims by label, or the dataset if it has none.
+    """Split a dataset along its further dims, and return its parts by label.
 
     Parameters
     ----------
     results
-        Dataset with ``waveform`` over `known` and further dims.
+        Dataset with ``waveform`` (`known`, further dims); without further dims it is the only part.
     known
         The dim of a single result.
     """
@@ -74,12 +74,12 @@ def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
     return named
 
 
-# datasets by name of the surface, or one dataset with the dim ``surface``
+# datasets by name of the surface, or one dataset for all surfaces
 SurfaceOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset
 
 
 def by_surface(data: SurfaceOrSeveral) -> dict[str, xr.Dataset]:
-    """Return datasets by name of the surface, also from one dataset with the dim ``surface``.
+    """Return the data of each surface by its name; a dataset with the dim ``surface`` is split.
 
     Each surface keeps its own wavenumbers.
     """
@@ -94,7 +94,7 @@ def by_surface(data: SurfaceOrSeveral) -> dict[str, xr.Dataset]:
 
 
 def by_load(data: xr.Dataset) -> list[tuple[float | None, xr.Dataset]]:
-    """Return the normal force [N] and the part of a result at each load; None if it is unknown."""
+    """Return each load's normal force [N] (None if unknown) and the results at this load."""
     if "load" not in data.dims:
         return [(None, data)]
     separate = [data.isel(load=k) for k in range(data.sizes["load"])]

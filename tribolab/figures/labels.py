@@ -1,4 +1,4 @@
-"""Texts of figures and tables: axis labels with SI units, speeds, columns, escaped names."""
+"""Texts of figures and tables: symbols, units, axis labels, column names, escaped names."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _SUBSCRIPT = re.compile(r"_([A-Za-z0-9]{2,}|[A-Z0-9])")
 
 
 def symbol(name: str) -> str:
-    r"""Return the symbol of a quantity in mathtext.
+    r"""Return the symbol of a quantity in matplotlib's mathtext; "" if it has none.
 
     Examples
     --------
@@ -23,7 +23,7 @@ def symbol(name: str) -> str:
 
 
 def plain_symbol(name: str) -> str:
-    """Return the symbol of a quantity as plain text; "" if it has an index, which needs mathtext.
+    """Return the symbol of a quantity as plain text; "" if it has a subscript.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def label(name: str, long_name: str | None = None) -> str:
 
 @functools.lru_cache(maxsize=256)
 def column(name: str) -> str:
-    """Return the name of a table column: the variable and its unit.
+    """Return the name of a table's column for a variable: the name with the unit at its end.
 
     Examples
     --------
@@ -105,9 +105,9 @@ def _known_characters() -> frozenset[int]:
 
 
 def plain(text: object, longest: int = 40) -> str:
-    r"""Return a text as one line that matplotlib can draw, without mathtext or missing glyphs.
+    r"""Return a text as one short line for matplotlib; it contains no formula and no unknown sign.
 
-    Characters missing in the font are drawn as boxes; the page shows the full name.
+    Characters that the font does not have become boxes.
 
     Examples
     --------

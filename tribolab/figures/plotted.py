@@ -1,4 +1,4 @@
-"""Decorator for functions that describe a figure: the decorated function draws it."""
+"""Decorator that makes a function which describes a figure into one which draws it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SEVERAL = """axes
 
 
 class Plot(Protocol[P]):
-    """Function of `tribolab.plot` that draws a figure; its `spec` returns the description only."""
+    """Function that draws a figure with matplotlib; its attribute `spec` only describes it."""
 
     spec: Callable[P, FigureSpec]
     __name__: str
@@ -42,7 +42,7 @@ class Plot(Protocol[P]):
 
 
 def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
-    """Return a decorator that makes a function draw the figure that it describes.
+    """Return a decorator: a function that describes a figure becomes one that draws it.
 
     The drawing function has the parameters of the describing one, and `title`, `ax` (`axes` if
     there are several panels) and `width`.
@@ -91,7 +91,7 @@ def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
 
 
 def _completed(text: str, ax: str) -> str:
-    """Return a docstring with the parameters that all figures have in common."""
+    """Return the docstring of a figure, completed by the parameters that all figures have."""
     common = _PARAMETERS.format(ax=ax)
     before, found, after = text.partition("\n\n    Notes\n")
     if not found:

@@ -1,4 +1,4 @@
-"""Signals in the figures of a run: friction, and distance along each stroke."""
+"""Signals that the figures of a run show: friction against time, and distance per stroke."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from tribolab.core.errors import AnalysisError
 if TYPE_CHECKING:
     import xarray as xr
 
-# share of the load below which F_x/F_N is mostly noise
+# share of the usual load below which the contact counts as unloaded: F_x/F_N is mostly noise
 _LOADED = 0.2
 
-
-# variables that `main_signal` uses if they are recorded
+# names of the variables from which `main_signal` is made
 LOOKED_AT = ("friction_force", "normal_force", "friction_coefficient")
 
 
@@ -31,7 +30,7 @@ class Signal(NamedTuple):
 
 
 def offset_of(friction: xr.Dataset | None, name: str) -> float:
-    """Return the offset that the analysis removed (median over the segments), or 0."""
+    """Return the median of a variable of the friction result, e.g. a removed offset; else 0."""
     if friction is None or name not in friction:
         return 0.0
     values = np.asarray(friction[name], float)
@@ -45,7 +44,7 @@ def _subtract_offset(data: xr.DataArray, offset: float) -> np.ndarray:
 
 
 def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
-    """Return the friction coefficient over time, or the friction force if no load was recorded.
+    """Return the friction coefficient (time), or the friction force if no load was recorded.
 
     Parameters
     ----------
@@ -57,7 +56,7 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
     Returns
     -------
     Signal
-        The ratio is NaN if the contact is not loaded.
+        The signal without its offset; a coefficient is NaN while the contact is unloaded.
 
     Raises
     ------
@@ -81,7 +80,7 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
 
 
 def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: float) -> np.ndarray:
-    """Return the ratio of two signals after subtracting their zeros; NaN where there is no load."""
+    """Return force / load after subtraction of their zeros; NaN while the contact is unloaded."""
     least = _LOADED * _usual_load(load, load_zero)
     ratio = room(load.size)
     for first, last in pieces(0, load.size):
@@ -94,7 +93,7 @@ def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: fl
 
 
 def _usual_load(load: np.ndarray, zero: float) -> float:
-    """Return the 95 % quantile of the load above its zero."""
+    """Return the 95 % quantile of the load after subtraction of its zero; infinite if unknown."""
 
     def is_above(first: int, last: int) -> np.ndarray:
         some = load[first:last] - zero
@@ -105,7 +104,7 @@ def _usual_load(load: np.ndarray, zero: float) -> float:
 
 
 class Stroke(NamedTuple):
-    """One segment of a run: its samples, the distance slid, and its trimmed part."""
+    """One segment of a run: its samples, the distance at each, and the ends of its trimmed part."""
 
     number: int
     samples: slice
@@ -116,10 +115,10 @@ class Stroke(NamedTuple):
 
 
 def strokes_of(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
-    """Return the samples of each segment, with the distance slid since its start [m].
+    """Return each segment of a run with its samples and the distance [m] since its start.
 
-    The distance comes from the position, else the speed, else (both unknown) it is the time [s]
-    since the start. It never decreases, even if a noisy sensor does.
+    The distance comes from the position, else from the speed; if both are unknown, it is the time
+    since the start [s]. It never decreases, even if the position is noisy.
     """
     time = np.asarray(run["time"], float)
     first = np.searchsorted(time, np.asarray(segments["start"], float), "left")

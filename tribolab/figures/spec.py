@@ -1,4 +1,4 @@
-"""Description of a figure: axes with quantity and unit, series, marks and texts.
+"""Description of a figure (axes, series, marks, texts), independent of the drawing program.
 
 A function of this package turns results into a `FigureSpec`. `look.draw` draws it for publications
 and notebooks, `page.still` for the page before its script runs, `assets/chart.js` on the live page.
@@ -22,18 +22,18 @@ Values = Sequence[Any] | np.ndarray
 
 @dataclass(frozen=True)
 class Axis:
-    """Axis of a panel: its quantity and unit, and its initial range.
+    """Axis of a panel: its label and unit, its scale, and its initial range.
 
     Parameters
     ----------
     label, unit
         Name of the quantity and the unit in which it is drawn.
     log
-        Whether it is initially logarithmic.
+        Whether the scale is initially logarithmic.
     decades
-        Decades initially visible below the highest value; 0 shows all.
+        Number of decades initially visible below the highest value; 0 shows all.
     least
-        Smallest possible value: error bars end there.
+        Smallest possible value, at which error bars end.
     include
         Values always included in the initial range.
     view
@@ -42,7 +42,7 @@ class Axis:
         Label for papers, with the symbol as mathtext, and name of the column in `figure_data`; by
         default both follow from `label`.
     linear_below
-        Absolute value below which an axis with logarithmic scales on both sides of zero is linear.
+        For an axis that is logarithmic on both sides of zero: value below which it is linear.
     """
 
     label: str
@@ -58,7 +58,7 @@ class Axis:
 
 
 def axis_of(name: str, words: str = "", unit: str = "", **more: Any) -> Axis:
-    """Return the axis of a quantity, by default with its long name and SI unit.
+    """Return an axis for a quantity, by default with its long name and SI unit.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def axis_of(name: str, words: str = "", unit: str = "", **more: Any) -> Axis:
 
 @dataclass(frozen=True)
 class Panel:
-    """Panel of a figure: two axes, a title, its relative height, and its name in `figure_data`."""
+    """Panel of a figure: its two axes, title, relative height, and name in `figure_data`."""
 
     x: Axis
     y: Axis
@@ -91,26 +91,26 @@ class Series:
     Parameters
     ----------
     label
-        Text in the legend; series with the same label are switched together.
+        Text in the legend; a click on it shows or hides all series with this label.
     x, y
         Values in the units of the panel's axes; None or NaN if unknown.
     style
-        Style. For a "band", `y` is the lower edge and `high` the upper one; for "bars", `y` are
+        For a "band", `y` is the lower edge and `high` the upper one; for "bars", `y` are
         names and `x` the lengths; for "heat", `high` are the colour values.
     colour
-        Index in the palette: of the surface in comparisons, else by order of appearance.
+        Index of the colour in the palette.
     panel
-        Number of the panel, from 0.
+        Index of the panel, from 0.
     surface, medium, load
-        Labels for the choice of loads and the filters; ``""`` and None apply to all.
+        Conditions by which the page selects series; ``""`` and None fit every selection.
     error
-        Half lengths of the error bars, in the unit of `y` (of `x` if `y` has names).
+        Half length of each error bar, in the unit of `y` (of `x` if `y` has names).
     error_below
-        Half lengths downward if they differ from those upward.
+        Half length of each error bar downward, if it differs from that upward.
     hover
         Tooltips: one text for each point, or one for all.
     runs
-        Names of its runs: it is hidden if all of them are.
+        Names of its runs; it is hidden if all of them are hidden.
     link
         Run that a click on a point opens; one for all points, or one for each.
     open
@@ -118,13 +118,13 @@ class Series:
     joined
         Whether a thin line joins the points.
     shade
-        Darker (below 0) or lighter (above 0) than the colour of the palette: the rank of the load.
+        Shade by load: negative is darker than the colour of the palette, positive lighter.
     marker
-        Index of its marker; None for that of the colour.
+        Index of the marker; None takes the marker that belongs to the colour.
     sizes
         Area of each marker relative to the default.
     pale, thin
-        Wide pale error bars (for a standard deviation); thin line (for a long trace).
+        Whether error bars are wide and pale (standard deviations); whether the line is thin.
     columns, name
         Numbers and name for `figure_data`, by column with the unit in its name; by default the
         drawn values under the label.
@@ -157,7 +157,7 @@ class Series:
 
 
 class SeriesLabels(TypedDict, total=False):
-    """Fields of `Series` that several series have in common."""
+    """Conditions of a `Series`, which several series have in common."""
 
     surface: str
     medium: str
@@ -170,7 +170,7 @@ class SeriesLabels(TypedDict, total=False):
 class Mark:
     """Straight line across a panel at a value, or shaded interval from `value` to `until`.
 
-    `text` is its entry in the legend; `above` is its label at the upper end, if there is room.
+    `text` is its entry in the legend; `above` is its label at the upper end (if it fits there).
     """
 
     side: Literal["x", "y"]
@@ -196,7 +196,7 @@ class Key:
 
 
 class KeyRow(NamedTuple):
-    """Row of texts, with the surface, medium and load by which it can be selected."""
+    """Row of a table of key numbers, with the surface, medium and load that select it."""
 
     cells: tuple[str, ...]
     surface: str = ""
@@ -205,7 +205,7 @@ class KeyRow(NamedTuple):
 
 
 class KeyTable(NamedTuple):
-    """Table of a figure: column heads, and rows that start with their name."""
+    """Table of key numbers: column heads, and rows whose first cell is their name."""
 
     heads: tuple[str, ...]
     rows: tuple[KeyRow, ...]
@@ -218,7 +218,7 @@ class FigureSpec:
     Parameters
     ----------
     title, note, alt
-        Title; explanation; and alternative text for screen readers.
+        Title, explanation, and alternative text for screen readers.
     panels, series, marks, keys
         Content of the figure.
     id
@@ -226,17 +226,17 @@ class FigureSpec:
     section
         Section of the page or view in which it appears.
     one_load
-        Whether the page shows one load at a time, initially the lowest.
+        Whether the page shows only one load at a time; the lowest is shown first.
     width
         Width on the page: a card, half or whole; on paper "whole" is 178 mm.
     height
         Height of its panel on the page [px]; 0 is the default.
     rows
-        Whether names are listed along the ordinate, which fixes its height.
+        Whether the ordinate is a list of names, whose number determines the height.
     across
         Number of panels in a row on paper.
     numbers
-        Its key numbers, for the page and the terminal.
+        Key numbers to be shown with it, on the page and the terminal.
     """
 
     id: str = ""
@@ -257,29 +257,29 @@ class FigureSpec:
 
     @property
     def loads(self) -> list[float]:
-        """Selectable loads, lowest first; empty if all loads are shown at once."""
+        """Loads [N] between which the reader can choose, lowest first; empty if all are shown."""
         if not self.one_load:
             return []
         return sorted({curve.load for curve in self.series if curve.load is not None})
 
     @property
     def surface(self) -> str:
-        """Surface that all series have in common; "" if there are several."""
+        """Surface of all series; "" if they have several."""
         return only({curve.surface for curve in self.series})
 
     @property
     def medium(self) -> str:
-        """Medium that all series have in common; "" if there are several."""
+        """Medium of all series; "" if they have several."""
         return only({curve.medium for curve in self.series})
 
 
 def only(names: set[str]) -> str:
-    """Return the name if there is exactly one; otherwise ""."""
+    """Return the only name of a set; "" if there are several or none."""
     return min(names) if len(names) == 1 else ""
 
 
 def legend(series: Iterable[Series]) -> dict[str, Series]:
-    """Return the series drawn in the legend for each label; lines and points precede bands."""
+    """Return the series whose style the legend shows for each label; bands come last."""
     named: dict[str, Series] = {}
     ranks = {"line": 0, "points": 0, "bars": 0, "heat": 0, "band": 2}
     for curve in series:
@@ -303,7 +303,7 @@ def places(names: Iterable[str]) -> dict[str, int]:
 
 
 def safe(text: str) -> str:
-    """Return a text in a form that is valid in anchors and file names.
+    """Return a text with only the characters that are valid in anchors and file names.
 
     Examples
     --------

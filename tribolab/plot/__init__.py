@@ -1,6 +1,6 @@
-"""Drawing for notebooks and papers: one function per figure, a result in, a Figure out.
+"""Figures for notebooks and papers: each function draws a result and returns a Figure.
 
-Each function also describes its figure without drawing it: `tribolab.plot.stribeck.spec(curve)`.
+`tribolab.plot.stribeck.spec(curve)` describes the figure without drawing it.
 """
 
 from __future__ import annotations

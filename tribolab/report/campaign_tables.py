@@ -23,17 +23,8 @@ if TYPE_CHECKING:
 
 _CHECK = ("check", "variable", "status", "value", "unit", "message")
 _POINT = (*tables.CURVE_LABELS, "sliding_speed_m_s", "friction_coefficient")
-_PART = (
-    *tables.CURVE_LABELS,
-    "sliding_speed_m_s",
-    "part",
-    "varies",
-    "contribution",
-    "share",
-    "dof",
-)
+_PART = (*_POINT[:-1], "part", "varies", "contribution", "share", "dof")
 _SEGMENT = (*tables.CURVE_LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
-
 
 # name of each table and description of its content
 TABLES = {
@@ -52,7 +43,6 @@ TABLES = {
     "checks": "findings, the gravest first, and the result of every check of every run",
     "decisions": "what a person decided on runs",
 }
-
 
 # numbers of a segment that friction.csv omits: components of U95, and what follows from others
 _NOT_IN_FRICTION = frozenset(

@@ -20,7 +20,6 @@ SEVERITIES = ("fail", "error", "suspect", "note")
 
 CURVE_LABELS = ["surface", "medium", "nominal_normal_force_N"]
 
-
 # characters that start a formula in spreadsheets; also the escape sign itself, so that a text that
 # starts with it survives writing and reading
 _ACTIVE = tuple("=+-@\t\r\n'＝＋－＠")

@@ -1,4 +1,4 @@
-"""Virtual rig: simulated signals and files with known true values, for demo, tests, teaching."""
+"""Virtual rig: simulated runs, scans and campaigns whose true values are known."""
 
 from tribolab.rig.calibration import Calibration
 from tribolab.rig.campaign import simulate_campaign

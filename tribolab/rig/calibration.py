@@ -1,4 +1,4 @@
-"""Errors of a force cell's calibration and mounting: gain, tilt, cross-talk, hysteresis."""
+"""Errors in the calibration and mounting of a force cell: gain, tilt, cross-talk, hysteresis."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Calibration:
-    """True calibration errors of the force cell; all are zero by default.
+    """True errors in the calibration and mounting of a force cell; all are zero by default.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ class Calibration:
     tilt
         Angle between cell and contact in the plane of sliding [rad], common to both axes.
     cross_talk_friction_from_normal, cross_talk_normal_from_friction
-        Share of one force in the reading of the other.
+        Share of one force that appears in the reading of the other.
     friction_linearity
         Hysteresis of the friction channel [N], added to the force against the motion.
     normal_linearity
@@ -41,7 +41,7 @@ class Calibration:
     normal_linearity: float = 0.0
 
     def seen(self, friction: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the readings of both channels for given true forces [N], without zero offsets.
+        """Return the readings of both channels [N] for given true forces, without zero offsets.
 
         Parameters
         ----------

@@ -46,7 +46,7 @@ class _Condition:
 
 @dataclass(frozen=True)
 class _Job:
-    """File or pair of files to simulate, possibly in another process."""
+    """One run, or all scans of one surface, to be simulated (perhaps in another process)."""
 
     folder: Path
     seed: int
@@ -74,28 +74,27 @@ def simulate_campaign(
     jobs: int = 1,
     executor: Executor | None = None,
 ) -> Path:
-    """Simulate a campaign with the virtual rig: all surfaces and loads, with repeats.
+    """Write a simulated campaign: raw files of runs and scans, campaign.toml and the truth.
 
     Parameters
     ----------
     folder
         Target folder; must not exist, or be empty.
     seed
-        The same seed gives the same bytes, whatever `jobs` is.
+        The same seed gives the same files, regardless of `jobs`.
     small
         A few runs at three speeds, for a first look and for tests.
     surfaces, loads
-        Names and normal forces [N]; default all of Xu et al. In glycerol at every load, dry at
-        the lowest.
+        Names of surfaces and normal forces [N]; by default all of Xu et al. Runs in glycerol have
+        every load, dry runs the lowest.
     n_repeats, n_scans
         Runs per condition, scans per surface.
     rig
         Protocol and sensors.
     faults
-        Names of faults. Of runs (`tribolab.rig.faults.FAULTS`): each affects one run, the first
-        suitable one without a fault. Of scans
-        (`tribolab.rig.scans.faulty.SCAN_FAULTS_BY_NAME`): each affects the scans of one surface, of
-        which enough are simulated to detect it. The truth lists the affected files.
+        Names of faults of runs (`tribolab.rig.faults.FAULTS`), each of which affects one run; and
+        of scans (`tribolab.rig.scans.faulty.SCAN_FAULTS_BY_NAME`), each of which affects the scans
+        of one surface. The truth lists the affected files.
     progress
         Called as ``progress(stage, done, total)``.
     jobs
@@ -141,7 +140,7 @@ def simulate_campaign(
     n_scans = n_scans or xu2026.profilometer.scans
 
     target.parent.mkdir(parents=True, exist_ok=True)
-    # written elsewhere, then moved: a simulation that is killed leaves no partial campaign
+    # written to a temporary folder first, so that a killed simulation leaves no partial campaign
     aside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
     try:
         for room in ("raw/friction", "raw/profiles", "truth"):
@@ -184,7 +183,7 @@ def _jobs(
 
 
 def _assign_faults(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
-    """Return the jobs with each fault assigned to a suitable one that has the fewest so far."""
+    """Return the jobs with faults; each fault goes to a suitable job with fewest faults so far."""
     for name in faults:
         fault = fault_of_campaign(name)
         able = [k for k, job in enumerate(work) if _can_have(job, fault)]
@@ -201,14 +200,14 @@ def _assign_faults(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
 
 
 def _can_have(job: _Job, fault: Fault | ScanFault) -> bool:
-    """Return whether a fault can occur in a run, or in the scans of a surface (number 0)."""
+    """Whether a fault can occur in a job, which is a run or (number 0) the scans of a surface."""
     if isinstance(fault, ScanFault):
         return not job.number
     return bool(job.number) and fault.suits(job.condition.surface, job.condition.medium)
 
 
 def _date(made: int) -> dt.datetime:
-    """Return the start time of a run, with eight runs a day."""
+    """Return the start time of the n-th run of a campaign with eight runs a day."""
     day, turn = divmod(made, 8)
     return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
 
@@ -223,10 +222,10 @@ def _processes(jobs: int) -> contextlib.AbstractContextManager[Executor | None]:
 def _run_all(
     work: list[_Job], pool: Executor | None, progress: Callable[[str, int, int], None] | None
 ) -> dict[str, Json]:
-    """Run all simulations, here or in other processes, and return the true values in order."""
+    """Run all simulations, here or in other processes, and return the true values by file."""
     do = pool.map if pool else map
     conditions = list(dict.fromkeys(job.condition for job in work if job.number))
-    # compute the friction laws first, because repeats share them
+    # each friction law is computed once, because all repeats use it
     laws = dict(zip(conditions, do(_law, conditions), strict=True))
     work = [replace(job, law=laws.get(job.condition)) for job in work]
     facts: dict[str, Json] = {"runs": {}, "scans": {}}
@@ -254,7 +253,7 @@ def _do(job: _Job) -> tuple[str, Json]:
         if not job.faults:
             write_scans(data, folder)
             return stem, {}
-        # random numbers of their own: apart from the faults, scans equal those without faults
+        # faults have their own random numbers, so that all else equals the scans without faults
         rng = _generator(job.seed, f"{stem} faults")
         return stem, write_faulty_scans(data, job.faults, folder, rng)
     name = run_name(c.surface, c.medium, c.normal_force, job.number)
@@ -275,7 +274,7 @@ def _do(job: _Job) -> tuple[str, Json]:
 
 
 def _generator(seed: int, name: str) -> np.random.Generator:
-    """Return the random generator of a run, independent of processes and of other runs."""
+    """Return a random generator that depends only on the seed and the name of a run."""
     return np.random.default_rng([seed, zlib.crc32(name.encode())])
 
 
@@ -338,7 +337,7 @@ def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str
 
 
 def _range(medium: str) -> str:
-    """Return the bounds of the work of adhesion as text, from literature surface energies."""
+    """Return the line of the campaign file with the bounds of the work of adhesion in a medium."""
     spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2).sel(medium=medium)
     ends = (1e3 * float(spread[f"work_of_adhesion_{end}"]) for end in ("low", "high"))
     return "work_of_adhesion_range = [{}]\n".format(", ".join(f'"{x:.1f} mJ/m^2"' for x in ends))

@@ -1,4 +1,4 @@
-"""Faults of real rigs that can be added to simulated runs, one for each check."""
+"""Faults of real rigs that can be added to simulated runs, each with the check that finds it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.rig.simulated import SimulatedRun
 
 @dataclass(frozen=True)
 class Fault:
-    """Fault of a run: its effect, its severity, and the check that must find it.
+    """Fault in the logs of a run, and the check that must find it.
 
     Attributes
     ----------
@@ -24,13 +24,13 @@ class Fault:
     what
         Effect, in a sentence.
     severity
-        "suspect", "fail", or "unreadable": the reader itself refuses the file.
+        Expected status of the check: "suspect" or "fail"; "unreadable" if the file cannot be read.
     check
         Name of the check on runs that should find it.
     strike
-        ``strike(run, rng) -> (force log, motion log, facts)``; changes nothing in place.
+        Function ``strike(run, rng)`` that returns force log, motion log, and facts on the fault.
     surface, medium
-        The only ones it can occur with; empty for any.
+        Surface and medium to which the fault is limited; "" for any.
 
     Examples
     --------
@@ -48,7 +48,7 @@ class Fault:
     medium: str = ""
 
     def suits(self, surface: str, medium: str) -> bool:
-        """Return whether the fault can occur on a given surface in a given medium."""
+        """Whether the fault can occur on a given surface in a given medium."""
         return self.surface in ("", surface) and self.medium in ("", medium)
 
 
@@ -56,7 +56,7 @@ class Fault:
 def inject(
     run: SimulatedRun, faults: str | Iterable[str], rng: int | np.random.Generator = 0
 ) -> SimulatedRun:
-    """Return the run with faults added to its logs; they are listed in ``facts["faults"]``.
+    """Return a run with faults in its logs; ``facts["faults"]`` lists them.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def inject(
 
 
 def known_fault(name: str) -> Fault:
-    """Return the fault with a given name; the error for an unknown name suggests the nearest."""
+    """Return the fault with a given name; raise if there is none."""
     if name not in FAULTS:
         raise ConfigError(f"the rig has no fault '{shown(name)}'{nearest(name, FAULTS, most=None)}")
     return FAULTS[name]

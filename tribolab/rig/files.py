@@ -1,4 +1,4 @@
-"""Raw files of the virtual rig: delimited text with fixed decimals."""
+"""Writing of simulated runs and scans as raw files: delimited text with fixed decimals."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments hav
 
 
 def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> bytes:
-    r"""Return numbers as text with fixed decimals, one row per line.
+    r"""Return columns of numbers as delimited text with fixed decimals, one row per line.
 
     Parameters
     ----------
     columns
-        Values of each column and the number of decimals wanted.
+        Values and number of decimals of each column.
     delimiter
         One character between columns.
 
     Notes
     -----
-    Loggers write fixed decimals; fast CSV writers only write the shortest form (``1e-05``). All
-    digits of a column are computed in one byte matrix, and leading zeros and absent signs are
-    masked. NaN becomes an empty cell.
+    Loggers write fixed decimals, but fast CSV writers only the shortest form (``1e-05``). Here, the
+    digits of a column form a matrix of bytes, from which a mask removes leading zeros and absent
+    signs. NaN becomes an empty cell.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
 
 
 def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Return the text of a force log, as the data logger writes it."""
+    """Return the content of the file of a force log, as the data logger writes it."""
     head = (
         "# Linear slider, force log\n"
         f"# date: {date.isoformat()}\n"
@@ -81,7 +81,7 @@ def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
 
 
 def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Return the text of a motion log, as the controller of the table writes it."""
+    """Return the content of the file of a motion log, as the table's controller writes it."""
     head = (
         "# Linear slider, motion log\n"
         f"# date: {date.isoformat()}\n"
@@ -116,7 +116,7 @@ def write_run(
     Returns
     -------
     tuple of pathlib.Path
-        The force log, which `tribolab.read` takes, and the motion log next to it.
+        Files of the force log, which `tribolab.read` reads, and of the motion log next to it.
 
     Examples
     --------
@@ -144,10 +144,10 @@ def scan_file(
     length: float | None = None,
     results: Mapping[str, float] | None = None,
 ) -> bytes:
-    """Return the text of a profile in m, as the stylus instrument exports it.
+    """Return the content of the file of a profile, as the stylus instrument exports it.
 
-    Pitch and length are written to the file, by default the true ones; `results` are the
-    instrument's own Ra and Rq, which it does not export by default.
+    All arguments are in m. `pitch` and `length` are those stated in the header, by default the true
+    ones; `results` are Ra and Rq computed by the instrument, exported only if given.
     """
     pitch = x[1] - x[0] if pitch is None else pitch
     length = x[-1] - x[0] if length is None else length
@@ -163,7 +163,7 @@ def scan_file(
 
 
 def write_scans(scans: xr.Dataset, folder: str | Path = ".", surface: str = "") -> list[Path]:
-    """Write simulated scans as the stylus instrument exports them, one file each.
+    """Write each simulated scan into a file, as the stylus instrument exports it.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def write_scans(scans: xr.Dataset, folder: str | Path = ".", surface: str = "") 
     folder
         Target folder, created if missing.
     surface
-        First part of the files' names; by default the surface's name.
+        First part of the file names; by default the name of the surface.
 
     Examples
     --------

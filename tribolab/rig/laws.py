@@ -1,4 +1,4 @@
-"""Friction laws of the virtual rig: the mixed-lubrication model where valid, else empirical."""
+"""Friction laws of the virtual rig: mixed lubrication where it is valid, else empirical laws."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _DRY_SHEAR_STRESS = {"Smooth": 0.130e6, "Sb-S": 0.605e6, "Sb-R": 0.907e6}
 
 @dataclass(frozen=True)
 class DryLaw:
-    """Slowly increasing dry friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``.
+    """Dry friction that increases slowly: ``mu = level (1 + slope log10(v / 0.1 mm/s))``.
 
     Examples
     --------
@@ -39,12 +39,12 @@ class DryLaw:
 
 @dataclass(frozen=True)
 class StribeckLaw:
-    """Friction of Smooth, to which the model does not apply: plateau, transition, viscous drag.
+    """Empirical Stribeck curve of the smooth surface: plateau, transition, viscous drag.
 
     Parameters
     ----------
     boundary
-        Plateau at low speed.
+        Friction coefficient of the plateau at low speed.
     transition_speed, exponent
         The solid part is ``boundary * exp(-(v/transition_speed)^exponent)`` [m/s].
     drag
@@ -71,19 +71,19 @@ class StribeckLaw:
 
 @dataclass(frozen=True)
 class StickSlip:
-    """Stick-slip of one surface in one medium, as a function of speed.
+    """Stick-slip of one surface in one medium: waveform, wavelength and drop against speed.
 
     Parameters
     ----------
     form
         ``"sawtooth"`` (slow linear rise, abrupt drop), ``"rounded"`` (near a sine) or ``"none"``.
     wavelength, wavelength_exponent
-        ``wavelength * (v / 1 um/s) ** -wavelength_exponent`` [m] of sliding per period.
+        Sliding distance per period [m]: ``wavelength * (v / 1 um/s) ** -wavelength_exponent``.
     drop, drop_exponent
-        From peak to valley, relative to the friction coefficient:
+        Fall from peak to valley, relative to the friction coefficient:
         ``drop * (v / 1 um/s) ** -drop_exponent``.
     fade_start, fade_stop
-        It fades linearly in log v between these speeds [m/s] and is zero above the second.
+        The drop decreases linearly in log v between these speeds [m/s]; above, there is none.
 
     Examples
     --------
@@ -113,7 +113,10 @@ class StickSlip:
 
 
 def _film_thickness(speed: float, normal_force: float) -> float:
-    """Return the soft-EHL film ``h/R = 3.05 (eta U/E'R)^0.6 (W/E'R)^-0.2``, U = v/2, E' = 2E*."""
+    """Return the thickness [m] of a soft-EHL film in the glycerol of the paper.
+
+    ``h/R = 3.05 (eta U/E'R)^0.6 (W/E'R)^-0.2`` with U = v/2 and E' = 2E*.
+    """
     s = xu2026.system
     stiffness = 2 * s.effective_modulus * s.radius
     entrainment = s.viscosity * speed / 2 / stiffness
@@ -121,7 +124,7 @@ def _film_thickness(speed: float, normal_force: float) -> float:
 
 
 def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | StribeckLaw | MixedLaw:
-    """Return friction over speed for a surface of Xu et al. at a load.
+    """Return the law of friction against speed for a surface of Xu et al. under a load.
 
     Parameters
     ----------
@@ -138,10 +141,9 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
     Notes
     -----
     In glycerol the rough surfaces follow the mixed-lubrication model with the paper's fitted shear
-    stress, see `mixed_law`. Smooth slides by instabilities: its level uses the paper's adhesive
-    area and area-corrected stress (Sec. 7). As the paper observes, which its theory does not
-    predict, it is constant up to about 10 um/s, where forced wetting starts; above, soft EHL adds
-    drag.
+    stress, see `mixed_law`. Smooth slides by instabilities: its plateau follows from the paper's
+    adhesive area and area-corrected stress (Sec. 7). It is constant up to about 10 um/s, where
+    forced wetting starts, as the paper observes without predicting it. Above, soft EHL adds drag.
 
     Examples
     --------
@@ -153,7 +155,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
         raise AnalysisError(f"the rig has no medium '{medium}'{nearest(medium, _MEDIA)}")
     s, known = xu2026.system, xu2026.surface(surface)
     pressure = s.nominal_pressure(normal_force)
-    # adhesion makes the contact of Smooth almost complete at any load; other areas grow with load
+    # adhesion makes the smooth contact almost complete at any load; other areas grow with load
     reference = pressure if known.name == "Smooth" else s.nominal_pressure(s.loads[0])
     if medium == "dry":
         level = _DRY_SHEAR_STRESS[known.name] * known.area_ratio_dry / reference
@@ -168,7 +170,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
 
 
 def stick_slip(surface: str, medium: str) -> StickSlip:
-    """Return the stick-slip described in Sec. 6 to 8, which occurs for Smooth only.
+    """Return the stick-slip of a surface as Xu et al. describe it (Sec. 6 to 8): Smooth only.
 
     Dry stick-slip is a sawtooth, equal at 1 and 3 um/s. In glycerol it is rounder and longer, much
     weaker and shorter at 3 than at 1 um/s, and absent at 10 um/s. The paper prints no numbers:

@@ -1,4 +1,4 @@
-"""Simulated mini traction machine: a ball rolls and slides on a disc, with known true values."""
+"""Simulated mini traction machine, in which a ball rolls and slides on a disc."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _HEADER = (
     "Traction Coeff (-)"
 )
 _RANGE = (1e-6, 0.08)  # N/m, viscosity times entrainment speed in the strip theory's range
-_SECONDS = 10.0  # time between rows [s]
+_SECONDS = 10.0  # time between two rows of the file [s]
 
 
 @dataclass(frozen=True)
 class MiniTraction:
-    """Steel ball on a rubber disc in a liquid, with the measuring errors of the machine.
+    """Steel ball on a rubber disc in a liquid: true values, and measuring errors of the machine.
 
     Parameters
     ----------
@@ -37,15 +37,16 @@ class MiniTraction:
         Viscosity of the liquid [Pa s] at the first temperature, and shear stress in the real
         contact area [Pa].
     slide_roll, speeds
-        Slide-roll ratio and entrainment speeds [m/s] of the Stribeck step.
+        Slide-roll ratio and entrainment speeds [m/s] of the step that measures a Stribeck curve.
     traction_speed, traction_ratios
-        Entrainment speed [m/s] and slide-roll ratios of the traction step; () for none.
+        Entrainment speed [m/s] and slide-roll ratios of the step that measures a traction curve;
+        no ratios, no step.
     temperature
         Temperature of the liquid [K] at the beginning and at the end.
     temperature_coefficient
         Relative decrease of the viscosity per kelvin [1/K].
     noise, level
-        Relative standard deviations [1] of each row, and of the factor common to a run.
+        Relative standard deviation [1] of single values, and of a factor common to a whole run.
 
     Examples
     --------
@@ -72,9 +73,9 @@ class MiniTraction:
     level: float = 0.03
 
     def friction(self, speed: np.ndarray, slide_roll: float, viscosity: float) -> np.ndarray:
-        """Return friction coefficients at entrainment speeds [m/s], without measuring errors.
+        """Return the true friction coefficients at entrainment speeds [m/s].
 
-        It follows the reduced theory of a ball, as used for fits and bands.
+        They are computed by the reduced theory of a ball, which fits also use.
         """
         stated = (self.surface, self.radius, self.youngs_modulus, self.normal_force)
         known = _parts(*stated, slide_roll)
@@ -87,7 +88,7 @@ class MiniTraction:
 def _parts(
     surface: str, radius: float, youngs_modulus: float, normal_force: float, slide_roll: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return ln(viscosity times speed) [N/m], fluid friction, and friction per shear stress."""
+    """Return ln(viscosity × speed), and ln of fluid friction and of µ per shear stress [1/Pa]."""
     # imported late for a quick start
     from tribolab.contact.geometry import PointContact
     from tribolab.lubrication.parameters import Interface, Solver
@@ -109,7 +110,7 @@ def _parts(
 
 
 def mini_traction_text(machine: MiniTraction, seed: int = 0) -> str:
-    """Return the text file of one run, as the machine's program writes it.
+    """Return the text of the file of one run, as the program of the machine writes it.
 
     Examples
     --------
@@ -148,7 +149,7 @@ def mini_traction_text(machine: MiniTraction, seed: int = 0) -> str:
 def simulate_mini_traction(
     folder: str | Path, seed: int = 0, *, machine: MiniTraction | None = None, repeats: int = 2
 ) -> Path:
-    """Write a simulated campaign of a mini traction machine: runs, scans, campaign.toml, truth.
+    """Write a simulated campaign on a mini traction machine: runs, scans, campaign.toml, truth.
 
     Parameters
     ----------
@@ -157,7 +158,7 @@ def simulate_mini_traction(
     seed
         Seed of noise and roughness.
     machine
-        `MiniTraction`; None is the default.
+        The machine and its errors; by default `MiniTraction()`.
     repeats
         Number of runs.
 

@@ -1,4 +1,4 @@
-"""Friction of the rough surfaces in glycerol, by the mixed-lubrication model."""
+"""Friction law of the rough surfaces in glycerol, from the mixed-lubrication model."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from scipy.interpolate import PchipInterpolator
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.studies import xu2026
 
-# the set-point speeds are nodes, so that the true friction there is not interpolated
+# includes all set speeds, so that the true friction at them is not interpolated
 _SPEEDS = tuple(sorted({1e-9, 1e-8, 1e-7, *xu2026.SPEEDS, 3e-2, 1e-1}))
 
 
 @dataclass(frozen=True)
 class MixedLaw:
-    """Friction coefficient by the mixed-lubrication model with a known shear stress.
+    """Friction coefficient against speed from the mixed-lubrication model.
 
     Parameters
     ----------
     surface
-        Name of the surface, whose stand-in spectrum the model uses.
+        Name of the surface, whose spectrum (a stand-in for the measured one) the model uses.
     normal_force
         Normal force [N].
     shear_stress
-        sigma_f [Pa] in the real contact area.
+        Shear stress sigma_f in the real contact area [Pa].
     speeds, friction
-        The model's curve: speeds [m/s] and friction coefficients, PCHIP over ln v between them.
+        Computed curve: speeds [m/s] and µ, interpolated in ln v (PCHIP).
 
     Examples
     --------
@@ -45,12 +45,12 @@ class MixedLaw:
     friction: tuple[float, ...]
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
-        """Return the friction coefficient at speeds [m/s]; the boundary limit below the lowest.
+        """Return the friction coefficient at speeds [m/s]; below the lowest speed it is constant.
 
         Raises
         ------
         AnalysisError
-            If a speed is above the highest.
+            If a speed is above the highest of the computed curve.
         """
         v = np.asarray(speed, dtype=float)
         low, high = self.speeds[0], self.speeds[-1]
@@ -66,9 +66,9 @@ class MixedLaw:
 
 @functools.cache
 def mixed_law(surface: str, normal_force: float) -> MixedLaw:
-    """Return the friction law of a rough surface in glycerol, with the shear stress of the paper.
+    """Return the friction law of a rough surface in glycerol, with the paper's shear stress.
 
-    sigma_f is interpolated between the paper's loads and constant beyond them.
+    The shear stress is interpolated between the loads of the paper, and constant beyond them.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Random processes for the virtual rig: noise and drift."""
+"""Random processes for the virtual rig: correlated noise and slow drift."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 def slow_noise(
     rng: np.random.Generator, span: float, correlation: float
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return a stationary random process of unit variance, which can be evaluated at any time.
+    """Return correlated noise of unit variance as a function that can be evaluated at any time.
 
     Parameters
     ----------
     rng
         Generator.
     span, correlation
-        Length of the record and correlation length, in one unit.
+        Length of the record and correlation length, in the same unit (time or distance).
 
     Returns
     -------
@@ -41,9 +41,9 @@ def slow_noise(
 
 
 def smooth_drift(rng: np.random.Generator, span: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Return a smooth random drift of unit variance that starts at zero.
+    """Return a smooth random drift, zero at the start, as a function of time.
 
-    Three cosines of one half to three halves of a period over the span.
+    It is a sum of three cosines with half a period, one, and one and a half in the record.
     """
     amplitudes = rng.standard_normal(3) * np.sqrt(1 / 3)
     phases = rng.uniform(0, 2 * np.pi, 3)

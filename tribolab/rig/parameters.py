@@ -1,4 +1,4 @@
-"""Parameters of the virtual rig in SI: protocol, sensors, loggers and clocks."""
+"""Parameters of the virtual rig in SI units: protocol, scatter, sensors, loggers and clocks."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from tribolab.studies import xu2026
 
 @dataclass(frozen=True)
 class Protocol:
-    """Protocol of a run: rest, load, strokes both ways at each speed, unload, rest.
+    """Protocol of a run: rest, loading, two strokes at each speed, unloading, rest.
 
     Parameters
     ----------
     speeds
         Set speeds [m/s], in the order of the run.
     stroke, stroke_exponent
-        A stroke at v is ``stroke * (v / 1 um/s) ** stroke_exponent`` long [m]: long enough for
+        Length of a stroke at speed v [m], ``stroke * (v / 1 um/s) ** stroke_exponent``: enough for
         ten stick-slip periods at the lowest speed, short enough at the highest for a short slab.
     unloaded_rest, loading, loaded_rest, rest
-        Durations [s]: without load at both ends, of the load ramp, under load before the first
-        stroke, between strokes.
+        Durations [s] of: the rest without load at each end, the change of load, the rest under load
+        before the first stroke, and the rest between strokes.
     ramp_fraction, shortest_ramp, longest_ramp
-        Share of a stroke's time for an acceleration ramp, within these limits [s].
+        Duration of an acceleration ramp: share of the time of a stroke, within these limits [s].
     build_up, run_in, overshoot
-        Friction reverses within the distance `build_up` [m] after a stroke's start, while the
-        contact shears before it slides. Its start-up peak, of relative height `overshoot`, decays
-        within `run_in` [m], 7 % of the shortest stroke.
+        At the start of a stroke, the contact shears before it slides: friction reverses within the
+        distance `build_up` [m]. It then has a peak of relative height `overshoot`, which decays
+        within `run_in` [m] (7 % of the shortest stroke).
     relaxation_time, relaxed_part
-        Relaxation time [s] of the friction force at rest, and the share it relaxes to.
+        At rest, the friction force relaxes to a share `relaxed_part` with this relaxation time [s].
 
     Examples
     --------
@@ -55,17 +55,17 @@ class Protocol:
 
 @dataclass(frozen=True)
 class Scatter:
-    """True variations of friction and load, as opposed to errors of the sensors.
+    """True random variations of friction and load (the errors of the sensors are separate).
 
     Parameters
     ----------
     repeat
-        Standard deviation of the friction level between repeats, relative.
+        Relative standard deviation of friction between repeats.
     fluctuation, fluctuation_length
         Relative standard deviation of friction along the track, and its correlation length as a
         share of the stroke.
     load_control, load_control_time
-        The load controller's error: relative standard deviation and correlation time [s].
+        Relative standard deviation of the controlled load, and its correlation time [s].
 
     Examples
     --------
@@ -82,20 +82,20 @@ class Scatter:
 
 @dataclass(frozen=True)
 class ForceCell:
-    """Two-axis force cell with amplifier and AD converter; forces in N.
+    """Errors of the two-axis force cell with amplifier and AD converter; forces in N.
 
     Parameters
     ----------
     noise, flicker, flicker_time
-        White noise, and slow noise of this correlation time [s].
+        Standard deviations of white and of slow noise, and correlation time of slow noise [s].
     hum
-        Amplitude of the 50 Hz hum before the logger averages.
+        Amplitude of the 50 Hz mains hum before the logger averages it.
     offset_friction, offset_normal
         Standard deviation of the zero offsets between runs.
     drift
-        Standard deviation of a smooth drift over a run; a fifth of it in the normal force.
+        Standard deviation of a smooth drift during a run; in the normal force, a fifth of it.
     step
-        One count of the converter: 16 bit over +-500 N.
+        Force per count of the converter: 16 bit for +-500 N.
 
     Examples
     --------
@@ -115,14 +115,14 @@ class ForceCell:
 
 @dataclass(frozen=True)
 class Encoder:
-    """Encoder of the table: noise and resolution of position and velocity.
+    """Errors of the table's encoder: noise and resolution of position and velocity.
 
     Parameters
     ----------
     velocity_noise
-        Smallest and largest relative velocity noise; each run draws its own.
+        Smallest and largest relative noise of the velocity; each run has a random value between.
     velocity_floor, velocity_step
-        Noise at rest and resolution of the velocity [m/s].
+        Noise of the velocity at rest, and its resolution [m/s].
     position_noise, position_step
         Noise and resolution of the position [m].
 
@@ -141,14 +141,14 @@ class Encoder:
 
 @dataclass(frozen=True)
 class Loggers:
-    """Sampling rates of the loggers: ``rate * (v / 1 um/s) ** exponent``, and `rate` at rest.
+    """Sampling rates of the loggers: ``rate * (v / 1 um/s) ** exponent``; at rest, ``rate``.
 
     Parameters
     ----------
     force_rate, motion_rate
-        Rates [Hz] at 1 um/s.
+        Sampling rates of force and motion at 1 um/s [Hz].
     exponent
-        Exponent of speed in the rate: with 1/2, 10 Hz at 1 um/s becomes 1 kHz at 1 cm/s.
+        With 1/2, a rate of 10 Hz at 1 um/s becomes 1 kHz at 1 cm/s.
     jitter
         Standard deviation of the sampling time, relative to the sampling interval.
 
@@ -167,7 +167,7 @@ class Loggers:
 
 @dataclass(frozen=True)
 class Clocks:
-    """Errors of two loggers' clocks: ``force time = motion time * (1 + rate) + shift``.
+    """Errors between the clocks of both loggers: ``force time = motion time (1 + rate) + shift``.
 
     Parameters
     ----------
@@ -188,12 +188,12 @@ class Clocks:
 
 @dataclass(frozen=True)
 class Rig:
-    """Virtual rig: protocol, sensors, loggers and clocks.
+    """All parameters of the virtual rig: protocol, sensors, loggers and clocks.
 
     Parameters
     ----------
     protocol, scatter, force_cell, encoder, loggers, clocks
-        Parts of the rig.
+        Parameters of each part.
 
     Examples
     --------

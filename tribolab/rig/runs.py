@@ -1,4 +1,4 @@
-"""Simulated run of the virtual rig: two logs and their true values."""
+"""Simulation of one run on the virtual rig: force log, motion log and their true values."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tribolab.units.stamping import stamp
 
 
 def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:
-    """Return the name of a run, which its files have too.
+    """Return the name of a run, with which its files begin.
 
     >>> run_name("Sb-R", "glycerol", 31.0, 1)
     'sb-r_glycerol_31N_01'
@@ -54,7 +54,7 @@ def simulate_run(
     faults: str | Sequence[str] = (),
     calibration: Calibration = TRUE,
 ) -> SimulatedRun:
-    """Simulate one run on the linear slider, or one for each of several conditions.
+    """Return a simulated run on the linear slider, or one for each of several conditions.
 
     Lists of surfaces, media, loads, numbers and seeds are combined element by element and give a
     list of runs; a list of faults then has one entry for each run.
@@ -66,20 +66,20 @@ def simulate_run(
     normal_force
         Normal force [N], or text with a unit.
     number
-        Number of the repeat; part of the name only.
+        Number of the repeat; it affects only the name.
     seed
         Seed or generator; the same seed gives the same run.
     rig
         Protocol and sensors; default `Rig`.
     law
-        Friction coefficient at speeds [m/s]; default `friction_law` of surface, medium and load.
+        Function from speeds [m/s] to µ; by default `friction_law` of surface, medium and load.
     slip
-        Stick-slip; default `stick_slip` of surface and medium.
+        Stick-slip; by default `stick_slip` of surface and medium.
     faults
-        Names of faults (`tribolab.rig.faults.FAULTS`) in the logs; the true signals are the same
-        as without.
+        Names of faults in the logs (`tribolab.rig.faults.FAULTS`); they do not change the true
+        signals.
     calibration
-        Errors of the force cell besides the zeros, which are drawn; default none.
+        Errors of the force cell in addition to its random zeros; by default none.
 
     Returns
     -------
@@ -118,7 +118,7 @@ def simulate_run(
     friction, normal = read_forces(
         signals, time, interval, rig.force_cell, errors, rng, calibration
     )
-    # the second logger is started and stopped by hand
+    # the motion logger starts later and stops earlier, as if operated by hand
     begin, end = rng.uniform(2.2, 4.0), schedule.end - rng.uniform(0.5, 2.5)
     moved, _ = sample_times(schedule, rig.loggers.motion_rate, rig.loggers, rng, begin, end)
     position, velocity, set_speed = read_motion(signals, moved, rig.encoder, errors, rng)
@@ -168,16 +168,16 @@ def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
 
 
 def _law_parameters(thing: object) -> Json:
-    """Return the parameters of a friction law, or the name of a function, for the record."""
+    """Return the parameters of a friction law or stick-slip, for the truth of a run."""
     values = asdict(thing) if is_dataclass(thing) and not isinstance(thing, type) else {}
-    # tables are stored in separate files
+    # curves are omitted
     values = {k: v for k, v in values.items() if not isinstance(v, tuple)}
     finite = {k: v if isinstance(v, str) or np.isfinite(v) else None for k, v in values.items()}
     return {"kind": getattr(thing, "__name__", type(thing).__name__), **finite}
 
 
 def _clock_facts(errors: Errors, begin: float, end: float) -> dict[str, float]:
-    """Return the clock errors, and the constant time shift that fits the motion log best."""
+    """Return the drawn errors of a run, and its clock shift in the middle of the motion log."""
     middle = motion_clock(np.array([begin, end]), errors).mean()
     return {
         "friction_force_offset_N": errors.friction_force_offset,

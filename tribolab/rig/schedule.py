@@ -1,4 +1,4 @@
-"""Motion and load of a run over time, phase by phase."""
+"""Schedule of a run: motion and load against time, in phases of constant acceleration."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from tribolab.rig.parameters import Protocol
 
 @dataclass(frozen=True)
 class Schedule:
-    """Phases of constant acceleration in order of time; one array element per phase.
+    """Phases of a run in order of time, each with constant acceleration (one element per phase).
 
     Parameters
     ----------
     start, duration
-        Times [s] on the force clock.
+        Start on the force clock, and duration [s].
     position, velocity, acceleration
-        Values at the start of the phase [m], [m/s], [m/s2]; the acceleration is constant.
+        Values at the start of the phase [m], [m/s], [m/s2].
     load_start, load_stop
-        Load relative to the set load; linear in between.
+        Load at the start and end of the phase, relative to the set load; linear in between.
     set_speed
         Set speed of the stroke [m/s], 0 at rest.
     stroke
-        Number of the stroke; at rest that of the last stroke, -1 before the first.
+        Number of the stroke, from 0; at rest, that of the stroke before, or -1.
     sliding
-        1 at constant speed, 0 in ramps, -1 at rest.
+        1 at constant speed, 0 while accelerating or braking, -1 at rest.
     """
 
     start: np.ndarray
@@ -46,25 +46,25 @@ class Schedule:
         return float(self.start[-1] + self.duration[-1])
 
     def phase(self, time: np.ndarray) -> np.ndarray:
-        """Return the number of the phase at given times."""
+        """Return the index of the phase at given times [s]."""
         return np.clip(np.searchsorted(self.start, time, side="right") - 1, 0, None)
 
     def motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the exact position [m] and velocity [m/s] at given times."""
+        """Return the true position [m] and velocity [m/s] at given times [s]."""
         i = self.phase(time)
         passed, a = time - self.start[i], self.acceleration[i]
         velocity = self.velocity[i] + a * passed
         return self.position[i] + (self.velocity[i] + 0.5 * a * passed) * passed, velocity
 
     def load(self, time: np.ndarray) -> np.ndarray:
-        """Return the load at given times, relative to the set load."""
+        """Return the load at given times [s], relative to the set load."""
         i = self.phase(time)
         part = (time - self.start[i]) / self.duration[i]
         return self.load_start[i] + (self.load_stop[i] - self.load_start[i]) * part
 
 
 def make_schedule(protocol: Protocol) -> Schedule:
-    """Return the schedule of all phases of a protocol.
+    """Return the phases that a protocol requires.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def make_schedule(protocol: Protocol) -> Schedule:
     1
     """
     p = protocol
-    # duration, acceleration, load at start and end, set speed, stroke, whether sliding
+    # columns: duration, acceleration, load at start and end, set speed, stroke, sliding
     rows: list[tuple[float, ...]] = [(p.unloaded_rest, 0, 0, 0, 0, -1, -1)]
     rows.append((p.loading, 0, 0, 1, 0, -1, -1))
     rows.append((p.loaded_rest, 0, 1, 1, 0, -1, -1))

@@ -1,4 +1,4 @@
-"""Recorded signals: sampling times, noise, offsets, drift, resolution and clocks."""
+"""Sampling of the true signals, with noise, offsets, drift, resolution and clock errors."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.signals import Signals
 
-TRUE = Calibration()  # ideal force cell
+TRUE = Calibration()  # force cell without calibration errors
 _MAINS = 50.0  # mains frequency [Hz]
 _TIME_STEP = 1e-5  # s, resolution of the time stamps
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Systematic errors of one run: offsets, drift and clocks.
+    """Systematic errors of one run: zero offsets, clocks, and noise level of the velocity.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Errors:
 def draw_errors(
     cell: ForceCell, encoder: Encoder, clocks: Clocks, rng: np.random.Generator
 ) -> Errors:
-    """Return random systematic errors for one run."""
+    """Return randomly drawn systematic errors for one run."""
     return Errors(
         friction_force_offset=float(rng.normal(0, cell.offset_friction)),
         normal_force_offset=float(rng.normal(0, cell.offset_normal)),
@@ -59,10 +59,10 @@ def sample_times(
     begin: float = 0.0,
     end: float = np.inf,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the sampling times [s, force clock] of a logger, and the interval [s] after each.
+    """Return the sampling times of a logger on the force clock, and the interval after each [s].
 
-    The rate is proportional to the square root of the step's speed. A phase has a whole number of
-    samples, so sampling is uniform within it except for jitter. Times increase strictly.
+    The rate increases with the set speed (`Loggers.exponent`). Each phase of the run has a whole
+    number of samples, evenly spaced except for jitter. Times increase strictly.
     """
     speed = np.maximum(schedule.set_speed, 1e-6)
     wanted = schedule.duration * rate * (speed / 1e-6) ** loggers.exponent
@@ -88,9 +88,9 @@ def read_forces(
     rng: np.random.Generator,
     calibration: Calibration = TRUE,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return friction and normal force [N] as the force cell measures them at given times [s].
+    """Return friction and normal force [N] as the force cell records them at given times [s].
 
-    Mains hum is averaged over the sampling interval, so that a slow logger hardly records it.
+    A logger averages over its sampling interval, so that a slow one hardly records mains hum.
     """
     end = signals.schedule.end
     normal = signals.force_normal(time)
@@ -126,6 +126,6 @@ def read_motion(
 
 
 def motion_clock(time: np.ndarray, errors: Errors) -> np.ndarray:
-    """Return times of the force clock converted to the motion logger's clock [s]."""
+    """Return times of the force clock as the clock of the motion logger shows them [s]."""
     shown = (time - errors.clock_shift) / (1 + errors.clock_rate)
     return np.round(shown / _TIME_STEP) * _TIME_STEP

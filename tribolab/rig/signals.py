@@ -1,4 +1,4 @@
-"""True signals of a run: friction, normal force and motion without sensor errors."""
+"""True friction and normal force during a run, before the sensors add errors."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tribolab.rig.parameters import Protocol, Scatter
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.waves import WAVES
 
-_TRIM = 0.10  # share of a segment that the paper removes at both ends (App. C)
-_FINE = 20_000  # points per segment for computing true averages
+_TRIM = 0.10  # share of a segment that the paper removes at each end (App. C)
+_FINE = 20_000  # points per segment at which true means are computed
 
 
 @dataclass(frozen=True)
 class StrokeFriction:
-    """Friction along one stroke, over the distance [m] from its start; positive against the motion.
+    """True friction coefficient along one stroke as a function of distance; resistance is > 0.
 
     Parameters
     ----------
@@ -29,9 +29,9 @@ class StrokeFriction:
     length
         Length of the stroke [m].
     ripple
-        Stick-slip and fluctuation, added to the level.
+        Function from distance [m] to stick-slip and fluctuation, which are added to the level.
     left
-        Remaining friction before the stroke, in the direction of this stroke.
+        Friction left from the stroke before, positive if it acts against the new motion.
     """
 
     level: float
@@ -41,18 +41,18 @@ class StrokeFriction:
     protocol: Protocol
 
     def __call__(self, distance: np.ndarray) -> np.ndarray:
-        """Return the friction coefficient at distances [m] from the stroke's start."""
+        """Return the friction coefficient at distances [m] from the start of the stroke."""
         steady = self.level + self.ripple(distance)
         built = 1 - (1 - np.clip(distance / self.protocol.build_up, 0, 1)) ** 3
         part = np.clip(distance / self.protocol.run_in, 0, 1)
-        peak = 27 / 4 * part * (1 - part) ** 2  # maximum of 1 at a third, zero at the end
+        peak = 27 / 4 * part * (1 - part) ** 2  # 1 at a third of the run-in, 0 at its end
         run_in = self.level * self.protocol.overshoot * peak
         return self.left + (steady - self.left) * built + run_in
 
 
 @dataclass(frozen=True)
 class Signals:
-    """True signals of a run as functions of time on the force clock [s].
+    """True friction and normal force of a run, as functions of time on the force clock [s].
 
     Parameters
     ----------
@@ -63,9 +63,9 @@ class Signals:
     normal_force
         Set load [N].
     load_error
-        Relative error of the load at a time.
+        Function from time [s] to the relative error of the load.
     truth
-        One row per constant-speed segment.
+        Table of true values, one row per segment of constant speed.
     """
 
     schedule: Schedule
@@ -76,11 +76,11 @@ class Signals:
     protocol: Protocol
 
     def force_normal(self, time: np.ndarray) -> np.ndarray:
-        """Return the normal force [N]; zero while the contact is unloaded."""
+        """Return the normal force [N] at given times [s]; zero without load."""
         return self.normal_force * self.schedule.load(time) * (1 + self.load_error(time))
 
     def friction(self, time: np.ndarray) -> np.ndarray:
-        """Return the friction coefficient, positive while the table moves to +x."""
+        """Return the friction coefficient at times [s], positive while the table moves to +x."""
         p, plan = self.protocol, self.schedule
         phase = plan.phase(time)
         stroke, moving = plan.stroke[phase], plan.sliding[phase] >= 0
@@ -100,7 +100,7 @@ class Signals:
 
 
 def _relaxed_share(protocol: Protocol, time: np.ndarray | float) -> np.ndarray:
-    """Return the share of the friction force that remains after a given time at rest."""
+    """Return the share of the friction force that remains after a time at rest [s]."""
     left = np.exp(-np.asarray(time) / protocol.relaxation_time)
     return protocol.relaxed_part + (1 - protocol.relaxed_part) * left
 
@@ -115,32 +115,31 @@ def make_signals(
     factor: float,
     rng: np.random.Generator,
 ) -> Signals:
-    """Return random true signals of one run.
+    """Return the true signals of one run, with random variations of friction and load.
 
     Parameters
     ----------
     schedule, protocol, scatter
-        Programme of the run, and its variations.
+        Phases of the run, its protocol, and its random variations.
     law, slip
         Friction coefficient at speeds [m/s], and stick-slip.
     normal_force
         Normal force [N].
     factor
-        This run's friction relative to the law.
+        Friction of this run relative to the law.
     rng
         Generator.
 
     Returns
     -------
     Signals
-        Its `truth` states for each segment the level of the law (times `factor`) and the mean of
-        the noise-free friction over the part that trimming by 10 % leaves: the two differ by what
-        stick-slip and fluctuation happen to leave over.
+        Its `truth` states for each segment the friction of the law (times `factor`), and the mean
+        true friction after trimming by 10 %, which also contains stick-slip and fluctuation.
     """
     slide = np.flatnonzero(schedule.sliding == 1)
     strokes: list[StrokeFriction] = []
     rows = []
-    left = 0.0  # signed friction coefficient left at the end of the previous rest
+    left = 0.0  # signed friction coefficient that is left after the rest before a stroke
     for k, phase in enumerate(slide):
         direction, speed = 1 if k % 2 == 0 else -1, float(schedule.set_speed[phase])
         duration, ramp = float(schedule.duration[phase]), float(schedule.duration[phase - 1])
@@ -169,12 +168,12 @@ def make_signals(
                 "stick_slip_drop": drop * level,
             }
         )
-    wander = slow_noise(rng, schedule.end, scatter.load_control_time)
+    load_noise = slow_noise(rng, schedule.end, scatter.load_control_time)
     return Signals(
         schedule,
         tuple(strokes),
         normal_force,
-        lambda time: scatter.load_control * wander(time),
+        lambda time: scatter.load_control * load_noise(time),
         pd.DataFrame(rows),
         protocol,
     )
@@ -190,7 +189,7 @@ def _ripple(
     fine: np.ndarray,
     rng: np.random.Generator,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return stick-slip of zero mean at constant speed, plus a random fluctuation."""
+    """Return the ripple of a stroke: stick-slip with zero mean, plus random fluctuation."""
     noise = slow_noise(rng, length, scatter.fluctuation_length * length)
     wave = WAVES[form](rng, length, wavelength, drop) if form != "none" else None
 

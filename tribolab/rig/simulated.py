@@ -1,4 +1,4 @@
-"""Record of a simulated run: its logs and true values."""
+"""A simulated run: its logs and its true values."""
 
 from __future__ import annotations
 
@@ -13,24 +13,23 @@ from tribolab.core.untyped import Json
 
 @dataclass(frozen=True)
 class SimulatedRun:
-    """Simulated run: its logs and its true signals.
+    """Simulated run: the two logs with sensor errors, and the true signals and segments.
 
     Parameters
     ----------
     name
         ``<surface>_<medium>_<load>N_<number>``.
     force_log
-        ``friction_force``, ``normal_force`` [N] over ``time`` [s] on the force clock.
+        ``friction_force``, ``normal_force`` [N] (time), on the force clock.
     motion_log
-        ``position`` [m], ``sliding_velocity``, ``set_speed`` [m/s] over ``time`` on the motion
-        clock.
+        ``position`` [m], ``sliding_velocity``, ``set_speed`` [m/s] (time), on the motion clock.
     noise_free
-        At the force log's times: the true ``friction_coefficient`` (signed as the force),
+        True signals at the times of the force log: ``friction_coefficient`` (signed as the force),
         ``friction_force``, ``normal_force``, ``position``, ``sliding_velocity``.
     segments
-        One row per constant-speed segment; units are in the column names.
+        True values, one row per segment of constant speed; units are in the column names.
     facts
-        Random and chosen parameters of this run, ready for JSON.
+        Parameters and randomly drawn errors of this run, as plain data for JSON.
 
     Examples
     --------
@@ -51,7 +50,7 @@ class SimulatedRun:
 
 @of_lists("run")
 def on_one_clock(run: SimulatedRun) -> xr.Dataset:
-    """Return the record of a rig that has only one clock: forces and the true velocity.
+    """Return a simulated run as if recorded with one clock: the force log and the true velocity.
 
     Parameters
     ----------
@@ -61,8 +60,8 @@ def on_one_clock(run: SimulatedRun) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``friction_force`` and ``normal_force`` [N] of the force log, and ``sliding_velocity``
-        [m/s], over ``time``.
+        ``friction_force`` and ``normal_force`` [N] of the force log, and ``sliding_velocity`` [m/s]
+        (time).
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Changes that faults make to the logs of a run; the faults are in `tribolab.rig.faults`.
+"""Functions that put a fault into the logs of a run; `tribolab.rig.faults` lists the faults.
 
-Every function takes the run and a generator, draws a realistic strength, and returns the force log,
-the motion log and the facts: place and strength. Nothing is changed in place.
+Every function takes a run and a random generator, draws how strong the fault is, and returns the
+force log, the motion log, and the facts on the fault. The run itself does not change.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from tribolab.rig.simulated import SimulatedRun
 
 StrikeFacts = Json
 Struck = tuple[xr.Dataset, xr.Dataset, StrikeFacts]
-_UNLOADED = 0.05  # share of the largest normal force above which the contact counts as loaded
-_FAST = 130.0  # Hz; lower sampling rates do not resolve lines of mains and rig
+_UNLOADED = 0.05  # share of the largest normal force below which the contact is unloaded
+_FAST = 130.0  # lowest sampling rate [Hz] that resolves mains hum and resonance
 
 
 def _typical(run: SimulatedRun) -> float:
@@ -27,27 +27,27 @@ def _typical(run: SimulatedRun) -> float:
 
 
 def _force(run: SimulatedRun, values: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with a given friction force."""
+    """Return the logs of a run with another friction force, and the facts."""
     return run.force_log.assign(friction_force=("time", values)), run.motion_log, facts
 
 
 def _normal(run: SimulatedRun, values: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with a given normal force."""
+    """Return the logs of a run with another normal force, and the facts."""
     return run.force_log.assign(normal_force=("time", values)), run.motion_log, facts
 
 
 def _replace_times(run: SimulatedRun, time: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with given times of the force log."""
+    """Return the logs of a run with other times of the force log, and the facts."""
     return run.force_log.assign_coords(time=time), run.motion_log, facts
 
 
 def _keep_rows(run: SimulatedRun, keep: np.ndarray, facts: StrikeFacts) -> Struck:
-    """Return the logs with only some rows of the force log."""
+    """Return the logs of a run with only some rows of the force log, and the facts."""
     return run.force_log.isel(time=keep), run.motion_log, facts
 
 
 def _rows(run: SimulatedRun, stroke: int) -> slice:
-    """Return the rows of the force log inside a segment of constant speed."""
+    """Return the rows of the force log that belong to a segment."""
     row = run.segments.iloc[stroke]
     first, last = np.searchsorted(run.force_log.time.values, [row.start_s, row.stop_s])
     return slice(int(first), int(last))
@@ -61,8 +61,8 @@ def _interval(run: SimulatedRun) -> np.ndarray:
 def load_sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Reverse the sign of the normal force that a zeroed cell records.
 
-    Its readings at rest are then on both sides of zero. If all were negative, the reader would
-    refuse the file before any check.
+    Its readings at rest are then on both sides of zero. If all readings were negative, the reader
+    would refuse the file before any check.
     """
     values = run.force_log.normal_force.values
     size = np.abs(values)
@@ -71,7 +71,7 @@ def load_sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Set the clock back by some seconds in the middle of the force log."""
+    """Set the clock of the force logger back by some seconds during the run."""
     time = run.force_log.time.values.copy()
     row, step = int(rng.uniform(0.2, 0.8) * time.size), float(rng.uniform(1, 4))
     time[row:] -= step
@@ -79,7 +79,7 @@ def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Restart the clock at zero in the middle of the force log."""
+    """Restart the clock of the force logger at zero during the run."""
     time = run.force_log.time.values.copy()
     row = int(rng.uniform(0.2, 0.8) * time.size)
     time[row:] -= time[row]
@@ -150,7 +150,7 @@ def coarse_digits(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def add_spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add single outlying samples."""
+    """Add spikes (single outliers) to the friction force."""
     values = run.force_log.friction_force.values.copy()
     rows = np.sort(rng.choice(np.arange(10, values.size - 10, 10), int(rng.integers(4, 13))))
     height = np.maximum(rng.uniform(0.2, 0.6, rows.size) * _typical(run), 2.0)
@@ -160,13 +160,13 @@ def add_spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 def zero_offset(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Add a constant to the friction force."""
-    # much larger than the offset of the cell itself, which may have the opposite sign
+    # exceeds the offset of the cell itself, which may have the opposite sign
     offset = float(rng.choice([-1, 1]) * (rng.uniform(0.8, 1.5) * _typical(run) + 4.0))
     return _force(run, run.force_log.friction_force.values + offset, {"offset_N": offset})
 
 
 def zero_drift(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add a drift of constant rate to the friction force."""
+    """Add a linear drift to the friction force."""
     time = run.force_log.time.values
     drift = float(rng.choice([-1, 1]) * (rng.uniform(0.2, 0.4) * _typical(run) + 0.6))
     values = run.force_log.friction_force.values + drift * time / time[-1]
@@ -180,7 +180,7 @@ def load_error(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def load_hunting(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add an oscillation of the load, which friction follows."""
+    """Add an oscillation to the normal force and, in proportion, to the friction force."""
     time = run.force_log.time.values
     part, frequency = float(rng.uniform(0.06, 0.12)), float(rng.uniform(0.5, 2.0))
     wave = part * np.sin(2 * np.pi * frequency * time)
@@ -216,7 +216,7 @@ def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _wave(run: SimulatedRun, amplitude: float, frequency: float, phase: float) -> np.ndarray:
-    """Return a sine wave averaged over the sampling interval of a logger."""
+    """Return a sine wave as a logger records it, averaged over its sampling interval."""
     seen = np.nan_to_num(np.sinc(frequency * _interval(run)))
     time = run.force_log.time.values
     return amplitude * seen * np.sin(2 * np.pi * frequency * time + phase)
@@ -232,7 +232,7 @@ def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add an oscillation whose frequency does not depend on speed."""
+    """Add an oscillation of the friction force whose frequency does not depend on speed."""
     _fast_speeds(run, "resonance", 2)
     amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
     frequency = float(rng.uniform(15, 40))
@@ -242,7 +242,7 @@ def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
-    """Raise an error unless enough speeds are sampled fast enough to show spectral lines."""
+    """Raise unless enough speeds are sampled fast enough for the check to see an oscillation."""
     interval = _interval(run)
     speeds = []
     for stroke, speed in enumerate(run.segments["sliding_speed_m_s"]):
@@ -263,7 +263,7 @@ def sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _progress(run: SimulatedRun) -> np.ndarray:
-    """Return the relative position within the segment at each row; NaN outside segments."""
+    """Return for each row the share of its segment that has passed (0 to 1); NaN between."""
     time = run.force_log.time.values
     result = np.full(time.size, np.nan)
     for stroke in range(len(run.segments)):
@@ -273,14 +273,14 @@ def _progress(run: SimulatedRun) -> np.ndarray:
 
 
 def run_in(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Change friction linearly along each segment, as in running-in."""
+    """Change the friction force linearly along each segment, as in running-in."""
     part = float(rng.choice([-1, 1]) * rng.uniform(0.2, 0.4))
     change = part * np.nan_to_num(_progress(run) - 0.5) * run.noise_free.friction_force.values
     return _force(run, run.force_log.friction_force.values + change, {"change": part})
 
 
 def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Modulate friction with three or four periods along each segment."""
+    """Add to the friction force a wave with three to four periods along each segment."""
     part, periods = float(rng.uniform(0.12, 0.25)), float(rng.uniform(3.2, 4.2))
     phase = float(rng.uniform(0, 2 * np.pi))
     wave = np.nan_to_num(np.sin(2 * np.pi * periods * _progress(run) + phase))
@@ -290,7 +290,7 @@ def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Remove rows until stick-slip has only three to five samples per period."""
+    """Remove rows of the force log, so that stick-slip has only 3 to 5 samples per period."""
     strong = 0.12 * float(run.segments["friction_coefficient"].mean())
     slip = run.segments[run.segments["stick_slip_drop"] > strong]
     if slip.empty:

@@ -1,4 +1,4 @@
-"""Simulated friction along one stroke, with known stick-slip and noise."""
+"""Simulation of friction along a single stroke, with known stick-slip and noise."""
 
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ def simulate_trace(
     jitter: float = 0.0,
     seed: int | np.random.Generator = 0,
 ) -> xr.Dataset:
-    """Return a simulated friction coefficient along one stroke at constant speed.
+    """Return a run with the simulated friction coefficient along one stroke at constant speed.
 
-    Lists of forms, wavelengths, drops, noises, numbers of samples, speeds and seeds are combined
-    element by element and give a list.
+    Form, wavelength, drop, noise, samples, speed and seed may be lists of equal length: then the
+    result is a list, whose n-th run has the n-th values.
 
     Parameters
     ----------
     form
         ``"sawtooth"``, ``"rounded"``, ``"irregular"`` or ``"none"``.
     wavelength, drop
-        Mean distance between drops [m] and their mean height [1].
+        Mean distance between drops of friction [m] and their mean size [1].
     noise, red
-        Standard deviation of all noise [1], and the part of its variance that is slow (correlated
-        over `red_length` of the stroke, as friction fluctuates along a track); the rest is white.
+        Standard deviation of all noise [1], and the share of its variance that is slow, as friction
+        fluctuates along a track (see `red_length`); the rest is white noise.
     periods, samples
         Length of the stroke in wavelengths, and number of samples.
     speed, level
         Sliding speed [m/s] and mean friction coefficient.
     scatter
-        Relative standard deviation of periods and drops.
+        Relative standard deviation of the periods and of the drops.
     red_length
         Correlation length of the slow noise, relative to the stroke.
     jitter
@@ -100,7 +100,7 @@ def simulate_trace(
 def _truth(
     wave: Callable[[np.ndarray], np.ndarray], length: float, wavelength: float
 ) -> dict[str, float]:
-    """Return the mean distance between peaks and the mean drop of the wave without noise."""
+    """Return the actual mean distance between peaks [m] and mean drop of a wave without noise."""
     place = np.linspace(0, length, int(_FINE * length / wavelength))
     values = wave(place)
     rising = np.diff(values) > 0

@@ -1,4 +1,4 @@
-"""True values of a simulated campaign, stored with the raw files but not used by the analysis."""
+"""True values of a simulated campaign; they are next to its raw files, unused by the analysis."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Truth:
         each run under ``facts["runs"][name]``; the faults of each scan, with check and severity,
         under ``facts["scans"][file name]``.
     segments
-        For each run's name the table of its constant-speed segments.
+        True values of the segments of each run, by name of the run.
 
     Examples
     --------
@@ -41,7 +41,7 @@ class Truth:
 
 
 def read_truth(folder: str | Path) -> Truth:
-    """Return the true values of a simulated campaign from its folder.
+    """Return the true values of the simulated campaign in a folder.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Waveforms of stick-slip along the sliding distance."""
+"""Waveforms of stick-slip: friction as a function of sliding distance."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 JITTER = 0.07  # relative standard deviation of the period and of the drop
-_FALL = 0.04  # share of a period that the sudden drop takes
+_FALL = 0.04  # share of a period during which friction drops
 
 
 def sawtooth(
     rng: np.random.Generator, length: float, wavelength: float, drop: float, jitter: float = JITTER
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return a sawtooth wave: linear rise, sudden drop, and random scatter of both.
+    """Return a sawtooth wave (linear rise, sudden drop) with randomly scattered periods and drops.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def rounded(
 def _periods(
     rng: np.random.Generator, length: float, wavelength: float, jitter: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return random starts and lengths of periods, and an amplitude at each of their edges."""
+    """Return random starts and lengths of periods [m], and relative amplitudes at their ends."""
     count = int(np.ceil(1.5 * length / wavelength)) + 4
     periods = wavelength * np.clip(1 + jitter * rng.standard_normal(count), 0.5, 1.5)
     first = -wavelength * rng.uniform(1, 2)
@@ -70,7 +70,7 @@ def _periods(
 def irregular(
     rng: np.random.Generator, length: float, wavelength: float, drop: float, jitter: float = JITTER
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return stick-slip without a period: thresholds and drops are random.
+    """Return a stick-slip wave without a period: both the peaks and the valleys are random.
 
     Parameters as for `sawtooth`; `jitter` is ignored. Peaks and valleys scatter by a third of a
     drop. Loading has constant slope, so that periods follow from the thresholds; a drop takes a

@@ -212,12 +212,9 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     if more is not None:
         console().print()
         console().print(more)
-    for line in terminal.outcome_lines(outcome):
-        say(line)
-    for line in terminal.where_to_look(outcome):
-        say(line)
-    for line in terminal.foreign_lines(outcome):
-        say(line)
+    for lines in (terminal.outcome_lines, terminal.where_to_look, terminal.foreign_lines):
+        for line in lines(outcome):
+            say(line)
     for line in terminal.failure_lines(outcome):
         say(f"tribolab: {line}", to_stderr=True)
     crashes = [curve.crash for curve in outcome.curves if curve.crash]

@@ -41,8 +41,6 @@ YES = ("yes", "y")
 _SUM = re.compile(r"^\d+(?:\s*\+\s*\d+)+$")
 FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
 LOAD = ("normal_force", "normal_stress")
-
-
 Say = Callable[[str], None]
 
 

@@ -1,1 +1,1 @@
-"""Common style of all figures: sizes, colours, texts, ticks and layout."""
+"""Drawing with matplotlib: style, layout, axes, ticks, and controls in notebooks."""

@@ -1,4 +1,4 @@
-"""Interactive controls for a figure in a notebook; the last picture is saved with the notebook."""
+"""Interactive controls for a figure in a notebook."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tribolab.core.untyped import Arguments
 from tribolab.figures.look.style import PaperFigure
 
 Draw = TypeVar("Draw", bound=Callable[..., Figure])
-_FINE = 2  # pixels of the picture per pixel on the screen
+_FINE = 2  # pixels of the picture per pixel of the screen
 
 
 def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
-    """Return a decorator that shows a figure with a control for each parameter.
+    """Return a decorator that shows a figure in a notebook with a control for each parameter.
 
     The picture is an ordinary output of the cell, drawn again after each change. Unlike with
     `ipywidgets.interact`, it remains in a saved or exported notebook, with the last settings.
@@ -85,7 +85,7 @@ def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
 
 
 def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
-    """Return a widget for each parameter, set to its default."""
+    """Return a widget for each parameter, set to the default of the parameter."""
     # imported late: ipywidgets loads slowly
     from ipywidgets import interactive
 
@@ -102,7 +102,7 @@ def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
 
 
 def _box(controls: Arguments) -> Arguments:
-    """Return the notebook output of the controls, and a text for notebooks without a kernel."""
+    """Return the controls as notebook output, with a text for notebooks without a kernel."""
     # imported late: ipywidgets loads slowly
     from ipywidgets import VBox
 
@@ -112,7 +112,7 @@ def _box(controls: Arguments) -> Arguments:
 
 
 def _picture(figure: Figure) -> tuple[dict[str, bytes], Arguments]:
-    """Return a figure as PNG with its display width, and close it in pyplot."""
+    """Return a figure as PNG with the width for display, and close it in pyplot."""
     if isinstance(figure, PaperFigure):
         return {"image/png": figure._repr_png_()}, {}
     buffer = io.BytesIO()

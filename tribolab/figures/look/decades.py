@@ -33,7 +33,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: bool = True) -> None:
-    """Limit the labelled decades of a logarithmic axis, with `small` minor ticks between them.
+    """Label at most `decades` decades of a logarithmic axis, and add minor ticks if `small`.
 
     Over many decades, ticks at 2 to 9 would merge and be slow to draw: then there is one per
     decade.
@@ -49,10 +49,10 @@ def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: b
 
 
 def symlog(axes: Axes, linear_below: float, low: float, high: float) -> None:
-    """Make an ordinate logarithmic on both sides of zero, and linear near zero."""
+    """Make an ordinate logarithmic for positive and negative values, and linear near zero."""
     first = int(np.floor(np.log10(linear_below) + 1e-9))
     largest = max(abs(low), abs(high), linear_below)
-    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # slightly larger data need no decade
+    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # no decade for up to 26 % more
     axes.set_yscale("symlog", linthresh=10.0**first, linscale=0.8)
     step = max(1, -(-(last - first) // 2))
     # the label of the lowest decade would overlap that of zero
@@ -69,7 +69,7 @@ def _signed_decade(value: float, place: int | None = None) -> str:
 
 
 def power_of_ten(value: float, place: int | None = None) -> str:
-    """Return a tick label: decades as powers of ten, other values as plain numbers.
+    """Return a tick label: a power of ten for decades, a plain number for other values.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def power_of_ten(value: float, place: int | None = None) -> str:
 
 
 class SmallTicks(Artist):
-    """Minor ticks of an axis, drawn with two markers only: one for each side of the frame.
+    """Minor ticks of an axis, drawn as two artists, one for each side of the frame.
 
     Create it inside `paper_style()`, whose style of minor ticks it uses.
 

@@ -1,4 +1,4 @@
-"""Drawing of a figure with matplotlib, as a new figure or in given axes."""
+"""Drawing of a described figure with matplotlib, as a new figure or in given axes."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from tribolab.figures.spec import FigureSpec, Key, Mark, Series, legend
 _LINES: dict[str, LineStyleType] = {
     "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.", "longdash": (0, (8, 2)),
 }  # fmt: skip
-_MAX_LEGEND_ENTRY = 64  # longest legend entry in characters
-_LEVELS = 0.3, 3.0  # log10 of power over noise at the ends of a map's colour scale, as on the page
+_MAX_LEGEND_ENTRY = 64  # most characters of a legend entry
+_LEVELS = 0.3, 3.0  # ends of a map's colour scale, log10(power / noise), as on the page
 
 
 def draw(
@@ -83,7 +83,7 @@ def draw(
 
 
 def plain_values(series: Series) -> Series:
-    """Return a series with its data as lists of numbers, from which axis ranges are computed."""
+    """Return a series with its data as lists of plain numbers, not arrays."""
     names = ("x", "y", "high", "error", "error_below", "sizes")
     numbers = {name: np.asarray(getattr(series, name)).tolist() for name in names}
     return replace(series, **numbers, columns=_columns_of(series))
@@ -129,19 +129,19 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
 
 
 def _is_last(spec: FigureSpec, number: int) -> bool:
-    """Return whether no panel below has the same abscissa."""
+    """Whether no panel below a panel has the same abscissa, so that it needs the label."""
     below = spec.panels[number + max(spec.across, 1) :: max(spec.across, 1)]
     return not any(panel.x == spec.panels[number].x for panel in below)
 
 
 def _is_first(spec: FigureSpec, number: int) -> bool:
-    """Return whether no panel to the left shows the same quantity."""
+    """Whether no panel to the left of a panel has the same ordinate, so that it needs the label."""
     row = spec.panels[number - number % max(spec.across, 1) : number]
     return not any(panel.y.label == spec.panels[number].y.label for panel in row)
 
 
 def colour_of(series: Series | Mark | Key) -> str:
-    """Return the colour of a series: its palette colour in the shade of its load."""
+    """Return the colour of a series as hexadecimal RGB: from the palette, shaded by load."""
     base = PALETTE[series.colour % len(PALETTE)]
     shade = getattr(series, "shade", 0.0)
     if not shade:
@@ -222,7 +222,7 @@ def _points(
 
 
 def _colour_bar(axes: Axes) -> None:
-    """Draw the colour scale of a map inside its panel."""
+    """Draw the colour scale of a heat map inside its panel."""
     maps = [drawn for drawn in axes.collections if drawn.get_array() is not None]
     inset = axes.inset_axes((0.04, 0.93, 0.3, 0.035))
     whole_figure(axes).colorbar(maps[-1], cax=inset, orientation="horizontal", ticks=[0.5, 1, 2, 3])
@@ -231,7 +231,7 @@ def _colour_bar(axes: Axes) -> None:
 
 
 def _write_labels_above(axes: Axes, marks: Sequence[Mark], seen: Scale) -> None:
-    """Write the labels of marks above them, in two rows, where there is room."""
+    """Write labels at the upper end of marks, in two rows; labels without room are omitted."""
     width = 25.4 * axes.get_window_extent().width / whole_figure(axes).dpi  # width of the axes, mm
     ends = [6.0, 0.0]  # mm occupied in each of two rows; the panel letter is in the first
     for mark in marks:
@@ -279,7 +279,7 @@ def _key(axes: Axes, key: Key) -> None:
 
 
 def _store(figure: Figure, spec: FigureSpec, series: Series) -> None:
-    """Store the numbers of a series in the figure, from where `figure_data` reads them."""
+    """Store the numbers of a series in the figure, for `figure_data`."""
     columns, panel = series.columns or {}, spec.panels[series.panel]
     if "" in columns:
         x, y, high, error = columns[""]

@@ -1,4 +1,4 @@
-"""Drawing in the user's own axes, whose style and content are kept."""
+"""Drawing in axes of the user, whose style and content are kept."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from tribolab.core.errors import AnalysisError
 
-# several axes, as from `plt.subplots` or in a list
+# several axes: a list, or the array that `plt.subplots` returns
 Panels = Sequence[Axes] | NDArray[np.object_]
 
 
 def name_all(axes: Axes) -> None:
-    """Make a legend of all labelled items in the axes, each label once."""
+    """Add a legend to axes that lists each label once."""
     handles, texts = axes.get_legend_handles_labels()
     named = dict(zip(reversed(texts), reversed(handles), strict=True))
     if named:
@@ -37,7 +37,7 @@ def whole_figure(part: Axes | SubFigure) -> Figure:
 
 @contextlib.contextmanager
 def guests(panels: Iterable[Axes]) -> Iterator[None]:
-    """Draw into the user's axes: their limits are extended to new data, old data remain visible."""
+    """Context for drawing in axes of the user; afterwards, their limits fit old and new data."""
     before = [(ax, ax.has_data(), ax.get_xlim(), ax.get_ylim()) for ax in panels]
     yield
     for ax, had, old_x, old_y in before:
@@ -51,6 +51,6 @@ def guests(panels: Iterable[Axes]) -> Iterator[None]:
 def _merged_limits(
     new: tuple[float, float], old: tuple[float, float], scale: str
 ) -> tuple[float, float]:
-    """Return limits that contain old and new ones; on a logarithmic axis only positive ones."""
+    """Return axis limits that include the old and the new ones; on a log axis, both positive."""
     ends = [end for end in old if scale != "log" or end > 0]
     return min([new[0], *ends]), max([new[1], *ends])

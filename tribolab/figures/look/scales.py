@@ -1,4 +1,4 @@
-"""Scales of the axes of a figure: limits, ticks and labels of a linear, log or time axis."""
+"""Limits, ticks and labels of matplotlib axes: linear, logarithmic, dates or names."""
 
 from __future__ import annotations
 
@@ -16,13 +16,11 @@ from tribolab.figures.look.decades import SmallTicks, few_ticks, power_of_ten, s
 from tribolab.figures.spec import FigureSpec
 
 RAMP = "cividis"
-
-
 MAX_WITH_SMALL_TICKS = 6  # in more panels, minor ticks would merge
 
 
 def x_range(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
-    """Return the range of a panel's abscissa, shared by panels with the same abscissa."""
+    """Return the range of a panel's abscissa, which fits all panels with the same abscissa."""
     own = spec.panels[number].x
     alike = [x for panel, (x, _) in zip(spec.panels, seen, strict=True) if panel.x == own]
     return replace(alike[0], low=min(x.low for x in alike), high=max(x.high for x in alike))
@@ -35,7 +33,7 @@ def axis_text(axis: Any) -> str:
 
 
 def scale_axis(axes: Axes, name: str, axis: Any, seen: Scale, small: bool) -> None:
-    """Set limits, scale and ticks of an axis."""
+    """Set the limits, scale and ticks of the "x" or "y" axis of a panel."""
     low, high = seen.low, seen.high
     own = getattr(axes, f"{name}axis")
     limits = getattr(axes, f"set_{name}lim")
@@ -63,7 +61,7 @@ def scale_axis(axes: Axes, name: str, axis: Any, seen: Scale, small: bool) -> No
 
 
 def _label_parts(axis: Any, low: float, high: float) -> None:
-    """Label 1, 2 and 5 of each decade if a logarithmic axis covers little more than one."""
+    """Label values between the decades, e.g. 2 and 5, if a log axis has fewer than 1.7 decades."""
     if high - low < 1.7:
         axis.set_major_locator(_parts_locator(high - low))
         axis.set_major_formatter(FuncFormatter(_part_of_decade))

@@ -12,17 +12,17 @@ from tribolab.figures.labels import plain
 from tribolab.figures.look.style import DOUBLE_MM, SINGLE_MM, new_figure, tidy
 from tribolab.figures.spec import FigureSpec
 
-_RIGHT, _BOTTOM, _PANEL = 3.0, 10.5, 50.0  # margins, and height of a panel [mm]
-_SHARED_GAP, _OWN_GAP = 3.0, 13.0  # mm between panels that share an abscissa, or that do not
-_ROW = 5.2  # mm per row of an axis of names
+_RIGHT, _BOTTOM, _PANEL = 3.0, 10.5, 50.0  # right and lower margin, height of a panel [mm]
+_SHARED_GAP, _OWN_GAP = 3.0, 13.0  # gap between panels with one common, or own abscissas [mm]
+_ROW = 5.2  # height of a row of an axis with names [mm]
 _LETTER = 1.38  # mean width of a 7 pt character [mm]
 _LEGEND_ROW, _TITLE_ROW = 3.8, 4.5  # height of a legend row and of a title [mm]
-_LINE_LENGTH = 7.5  # length of a legend entry in addition to its text [mm]
-_NAMES = 42.0  # widest margin for names [mm]
+_LINE_LENGTH = 7.5  # length of a legend entry without its text [mm]
+_NAMES = 42.0  # widest left margin for an axis with names [mm]
 
 
 class Sheet(NamedTuple):
-    """Figure with its panels, size and left margin [mm], and whether panels share an abscissa."""
+    """Matplotlib figure with its panels; size and left margin in mm; `rows` of the legend."""
 
     figure: Figure
     panels: list[Axes]
@@ -35,7 +35,7 @@ class Sheet(NamedTuple):
 
 
 def new_sheet(spec: FigureSpec, title: str = "", width: float = 0.0) -> Sheet:
-    """Return an empty figure with the panels of a description, laid out in mm."""
+    """Return a matplotlib figure with empty panels as a description requires."""
     width = width or (DOUBLE_MM if spec.width == "whole" or spec.across > 1 else SINGLE_MM)
     count, across = len(spec.panels), min(spec.across, len(spec.panels))
     shared = count > 1 and len({panel.x for panel in spec.panels}) == 1
@@ -62,7 +62,7 @@ def new_sheet(spec: FigureSpec, title: str = "", width: float = 0.0) -> Sheet:
 
 
 def _height(spec: FigureSpec, number: int) -> float:
-    """Return the height of a panel [mm], which depends on the number of names on its axis."""
+    """Return the height of a panel [mm]; an ordinate with names needs a row for each."""
     names = {y for s in spec.series if s.panel == number for y in s.y if isinstance(y, str)}
     if names:
         lines = sum(1 + (len(name) > 25) for name in names)
@@ -78,7 +78,7 @@ def _left(spec: FigureSpec) -> float:
 
 
 def entries(spec: FigureSpec) -> list[str]:
-    """Return the texts of the legend, in order."""
+    """Return the legend entries in order; empty if there is only one."""
     words = [s.label for s in spec.series] + [m.text for m in spec.marks]
     words = list(dict.fromkeys([*words, *(key.label for key in spec.keys)]))
     return [word for word in words if word] if len([w for w in words if w]) > 1 else []
@@ -95,7 +95,7 @@ def _legend_rows(spec: FigureSpec, width: float) -> int:
 
 
 def finish(spec: FigureSpec, sheet: Sheet) -> None:
-    """Add panel letters, titles and the legend."""
+    """Add panel letters, titles and the legend to a drawn figure."""
     for number, (axes, panel) in enumerate(zip(sheet.panels, spec.panels, strict=True)):
         if panel.title:
             axes.set_title(plain(panel.title, 48), fontsize=7, loc="left", pad=3)

@@ -1,4 +1,4 @@
-"""Common style of all figures: sizes, fonts, colours, markers, and writing of files."""
+"""Common style of all figures: sizes and fonts; and writing of figures into files."""
 
 from __future__ import annotations
 
@@ -73,13 +73,13 @@ _RC: dict[RcKeyType, Any] = {
 
 
 class PaperFigure(Figure):
-    """Matplotlib figure that is displayed in a notebook without pyplot.
+    """Matplotlib figure that a notebook displays without the help of pyplot.
 
-    It is made without pyplot, so there is no global state and nothing to close.
+    pyplot would keep a list of all figures, which the user would have to close.
     """
 
     def _ipython_display_(self) -> None:
-        # pyplot's inline backend would halve this resolution
+        # explicit, because pyplot's inline backend would halve the resolution
         from IPython.display import display
 
         display({"image/png": self._repr_png_()}, raw=True)
@@ -95,12 +95,12 @@ _NUMBERS = "_tribolab_numbers"  # name of the attribute that stores a figure's n
 
 
 def keep(figure: Figure, panel: str, series: str, **columns: np.ndarray) -> None:
-    """Store the numbers drawn in a figure, from where `figure_data` reads them."""
+    """Store the numbers of a drawn series in the figure, for `figure_data`."""
     vars(figure).setdefault(_NUMBERS, []).append({"panel": panel, "series": series, **columns})
 
 
 def figure_data(figure: Figure) -> pd.DataFrame:
-    """Return the numbers that functions of this package have drawn in a figure.
+    """Return a table of the numbers that functions of `tribolab.plot` have drawn in a figure.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def figure_data(figure: Figure) -> pd.DataFrame:
 
 @contextlib.contextmanager
 def paper_style() -> Iterator[None]:
-    """Apply the style of this package within a context.
+    """Context in which matplotlib draws in the style of this package.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def paper_style() -> Iterator[None]:
     True
     """
     with mpl.rc_context():
-        # start from matplotlib's defaults, not the user's matplotlibrc, so that figures are equal
+        # matplotlib's defaults first: a user's matplotlibrc must not change the figures
         defaults = {k: v for k, v in mpl.rcParamsDefault.items() if k not in _KEEP}
         mpl.rcParams.update(defaults)
         mpl.rcParams.update(_RC)
@@ -159,7 +159,7 @@ def new_figure(width_mm: float, height_mm: float) -> PaperFigure:
 
 
 def tidy(axes: Axes, letter: str = "") -> None:
-    """Add the letter of a panel to its axes."""
+    """Write the letter of a panel, e.g. (a), into its upper left corner."""
     if letter:
         axes.annotate(
             f"({letter})",
@@ -186,9 +186,9 @@ def _rounded(match: re.Match[str]) -> str:
 
 
 def _shorten_path(match: re.Match[str]) -> str:
-    """Return an SVG path with two decimals, and without `L` where SVG implies it."""
+    """Return an SVG path with two decimals, and without the letters L that SVG does not need."""
     path = " ".join(_DECIMALS.sub(_rounded, match[1]).split())
-    if _POLYLINE.fullmatch(path):  # after M, SVG draws lines between pairs of numbers
+    if _POLYLINE.fullmatch(path):  # after M, pairs of numbers are lines also without L
         path = path.replace(" L ", " ")
     return f' d="{path}"'
 
@@ -201,7 +201,7 @@ _BARE_GROUP = re.compile(r"<g>\n(<use[^>]*/>)\n</g>")
 
 
 def _shorten_svg(text: str) -> str:
-    """Return an SVG with fewer decimals, and without indents, ids and repeated styles."""
+    """Return a shorter SVG: fewer decimals, and no indents, ids or repeated styles."""
     text = _DRAWN.sub(_shorten_path, _COMMENT.sub("", text))
     text = _PLACE.sub(lambda match: _DECIMALS.sub(_rounded, match[0]), text)
     styles = dict(_SYMBOL.findall(text))
@@ -217,7 +217,7 @@ def _shorten_svg(text: str) -> str:
 
 
 class _CachedTexts(TextToPath):
-    """Text renderer that typesets a formula and measures a text once for all figures."""
+    """Matplotlib's converter of text to outlines, with one cache for all figures."""
 
     _formulas = MathTextParser("path")
 
@@ -240,7 +240,7 @@ def _measured(
 
 @contextlib.contextmanager
 def _share_text_cache() -> Iterator[None]:
-    """Make all renderers share one cache of texts and one parser within a context."""
+    """Context in which matplotlib measures each text and formula only once."""
     own = vars(mpl_text)["TextToPath"]
     vars(mpl_text)["TextToPath"] = _CachedTexts
     try:
@@ -250,7 +250,7 @@ def _share_text_cache() -> Iterator[None]:
 
 
 def svg(figure: Figure) -> str:
-    """Return the figure as SVG without date and random ids, so that equal data give equal text.
+    """Return a figure as SVG; equal data give equal text, because it has no date or random ids.
 
     Coordinates are rounded to 0.01 pt (4 um on paper), which halves the size of a trace.
 
@@ -271,7 +271,7 @@ def svg(figure: Figure) -> str:
 
 
 def save(figure: Figure, path: str | Path) -> Path:
-    """Write the figure as SVG, or in another format given by the file extension.
+    """Write a figure into a file; the suffix determines the format, e.g. .svg, .pdf or .png.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Figures on the report page: initial view, and the picture shown until the script has drawn it."""
+"""Figures on the report page: data for the script, and the picture shown before it runs."""

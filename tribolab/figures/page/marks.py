@@ -1,4 +1,4 @@
-"""SVG of a static figure: markers, lines, bands and bars, with colours by CSS class."""
+"""SVG of the parts of a static figure: markers, lines, bands and error bars."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _DASHES: dict[Style, str] = {
     "longdash": "10 3",
 }
 _MARKER = 3.6  # half the width of a marker [px]
-_SEEN = 0.3  # largest distance between a line and its simplification [px]
+_SEEN = 0.3  # largest distance of a line from the original points [px]
 _LEVELS = 5  # number of colours in a heat map
-_LOW, _HIGH = 0.3, 3.0  # ends of the colour scale, as in `assets/chart.js`
-# corners of each marker (0 is a circle), and angle of the first corner [turns from the top]
+_LOW, _HIGH = 0.3, 3.0  # values at the ends of the colour scale, as in `assets/chart.js`
+# number of corners of each marker (0 is a circle), and angle of the first [turns from the top]
 _CORNERS = ((0, 0.0), (4, 0.125), (4, 0.0), (3, 0.0), (3, 0.5), (5, 0.0), (6, 0.25), (5, 0.0))
 
 
@@ -31,7 +31,7 @@ def hue(colour: int) -> str:
 
 
 def coordinate(value: float) -> str:
-    """Return a length [px] with only the digits that are visible.
+    """Return a length [px] as text, rounded to a tenth.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def coordinate(value: float) -> str:
 
 
 def path(points: Iterable[PlacedPoint | None]) -> str:
-    """Return an SVG path of lines through points, interrupted at None.
+    """Return an SVG path through points; None interrupts the line.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def path(points: Iterable[PlacedPoint | None]) -> str:
 
 
 def straightened(points: Sequence[PlacedPoint | None]) -> Iterator[PlacedPoint | None]:
-    """Yield the points of a line, except those that have no visible effect.
+    """Yield the points of a line without those that make no visible difference.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def straightened(points: Sequence[PlacedPoint | None]) -> Iterator[PlacedPoint |
 
 
 def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
-    """Yield the points of one piece of a line kept by the Ramer-Douglas-Peucker algorithm."""
+    """Yield the points of an uninterrupted line that the Ramer-Douglas-Peucker algorithm keeps."""
     x, y = np.array(part, float).T
     kept = {0, len(part) - 1}
     spans = [(0, len(part) - 1)]
@@ -96,7 +96,7 @@ def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
 
 
 def markers(points: Sequence[PlacedPoint], marker: int, sizes: Iterable[float]) -> str:
-    """Return an SVG path of a marker of given size [px] at each point."""
+    """Return an SVG path with a marker at each point; `sizes` are half widths [px]."""
     corners, turn = _CORNERS[marker % _HUES]
     return "".join(
         _marker(*at, size, corners, turn) for at, size in zip(points, sizes, strict=True)
@@ -117,7 +117,7 @@ def _marker(x: float, y: float, size: float, corners: int, turn: float) -> str:
 def error_bars(
     bars: Iterable[tuple[float, float, float]], cap: float, *, lying: bool = False
 ) -> str:
-    """Return an SVG path of error bars with caps [px]: vertical, or horizontal if `lying`."""
+    """Return an SVG path of vertical (horizontal if `lying`) error bars with caps; all in px."""
     parts = []
     for at, low, high in bars:
         lines = [[(at, low), (at, high)]]
@@ -129,7 +129,7 @@ def error_bars(
 def drawn_points(
     points: Sequence[PlacedPoint], series: Series, bars: str = "", areas: Sequence[float] = ()
 ) -> Iterator[str]:
-    """Yield the SVG of a series' error bars, and of its markers with relative `areas`."""
+    """Yield the SVG of the error bars of a series, and of its markers with relative `areas`."""
     if bars:
         kind = "bar pale" if series.pale else "bar"
         yield f'<path class="{_hue(series)} {kind}" d="{bars}"/>'
@@ -140,7 +140,7 @@ def drawn_points(
 
 
 def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator[str]:
-    """Yield the SVG of a series' line."""
+    """Yield the SVG of the line of a series."""
     dash = _DASHES.get(series.style)
     look = f' stroke-dasharray="{dash}"' if dash else ""
     kind = "line thin" if series.thin else "line"
@@ -148,7 +148,7 @@ def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator
 
 
 def _hue(series: Series) -> str:
-    """Return the CSS classes of a series' colour and shade, defined in `still.css`."""
+    """Return the CSS classes for the colour and shade of a series (see `assets/still.css`)."""
     tenths = round(10 * series.shade)
     shade = f" {'dark' if tenths < 0 else 'pale'}{abs(tenths)}" if tenths else ""
     return hue(series.colour) + shade
@@ -164,7 +164,7 @@ def drawn_band(
 
 
 def drawn_heat(points: Sequence[tuple[PlacedPoint, float]]) -> Iterator[str]:
-    """Yield the SVG of dots whose colour shows their level."""
+    """Yield the SVG of a heat map: dots with a colour for each value."""
     by_level: dict[int, list[PlacedPoint]] = {}
     for point, value in points:
         share = (value - _LOW) / (_HIGH - _LOW)

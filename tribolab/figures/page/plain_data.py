@@ -1,4 +1,4 @@
-"""A figure as plain data for the page and its script."""
+"""Conversion of a figure's description to plain data (for JSON) that the page's script reads."""
 
 from __future__ import annotations
 
@@ -18,12 +18,15 @@ _NOT_ON_PAGE |= {"thin", "numbers"}
 
 
 def written_labels(figure: FigureSpec, labels: Collection[str]) -> int:
-    """Return the number of legend entries; 0 for a card that would have too many."""
+    """Return the number of legend entries that are shown: 0 if a card would have too many."""
     return 0 if figure.width == "card" and len(labels) > _MAX_CARD_LABELS else len(labels)
 
 
 def plain_data(value: Any) -> Any:
-    """Return a figure as plain data, without default values and with rounded numbers."""
+    """Return a figure's description as dictionaries and lists, with rounded numbers.
+
+    Fields with their default value are omitted.
+    """
     if is_dataclass(value) and not isinstance(value, type):
         values = {field.name: getattr(value, field.name) for field in fields(value)}
         usual = {field.name: field.default for field in fields(value)}

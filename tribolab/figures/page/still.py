@@ -1,6 +1,6 @@
-"""Static SVG of an interactive figure, shown until the script draws it, and when printed.
+"""Static picture (SVG) of an interactive figure, for print and until the script draws it.
 
-It shows the initial view. So the first screen is complete immediately, and pages have figures if
+It shows the initial view. Hence the first screen is complete immediately, and pages have figures if
 they are printed early or scripts do not run. Colours are classes of `assets/still.css`, for light
 and dark mode.
 """
@@ -22,14 +22,14 @@ from tribolab.figures.page.marks import PlacedPoint, coordinate
 from tribolab.figures.page.plain_data import plain_data, written_labels
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Series, Style, Width, legend
 
-_WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], similar to paper
-_HEIGHTS = (300, 430, 580)  # height [px] of figures with one, two and three panels
+_WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # width of a figure [px]
+_HEIGHTS = (300, 430, 580)  # height of a figure with one, two and three panels [px]
 _LETTER = 6.6  # mean width of a character [px]
 _LINE = 18  # height of a legend row [px]
 _TOP, _RIGHT, _BOTTOM = 8, 12, 42
 _BETWEEN = 16  # distance between panels [px]
 _MAX_POINTS = 240  # largest number of points of a line
-_MAX_HEAT = 400
+_MAX_HEAT = 400  # largest number of points of a heat map
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class _Box:
     y: Scale
 
     def at(self, x: object, y: object) -> PlacedPoint | None:
-        """Return the position [px] of a point in the panel; points far outside are clipped."""
+        """Return the position of a point in the panel [px]; None if it cannot be drawn."""
         across, up = self.x.place(x), self.y.place(y)
         if across is None or up is None:
             return None
@@ -56,7 +56,7 @@ def _clip(share: float) -> float:
 
 
 def still(figure: FigureSpec) -> str:
-    """Return a figure as SVG; if loads are selectable, it shows the lowest load."""
+    """Return the initial view of a figure as SVG; a choice of loads starts at the lowest."""
     width = _WIDTHS[figure.width]
     series, seen = first_view(figure)
     labels = legend(series)
@@ -75,7 +75,7 @@ def still(figure: FigureSpec) -> str:
 
 
 def first_view(figure: FigureSpec) -> tuple[list[Series], list[tuple[Scale, Scale]]]:
-    """Return the series that are visible at first, and the axis ranges of each panel."""
+    """Return the series of the initial view, and the ranges of both axes of each panel."""
     series = first_series(figure)
     seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
     if len(seen) > 1:  # panels in a column share their abscissa
@@ -85,7 +85,7 @@ def first_view(figure: FigureSpec) -> tuple[list[Series], list[tuple[Scale, Scal
 
 
 def first_series(figure: FigureSpec) -> list[Series]:
-    """Return the series that are visible at first, with their data as plain numbers."""
+    """Return the series of the initial view, with their data as plain numbers."""
     shown = []
     for curve in figure.series:
         other = figure.one_load and curve.load is not None and curve.load != figure.loads[0]
@@ -117,7 +117,7 @@ def _legend(labels: dict[str, Series], width: int) -> Iterator[str]:
 def _boxes(
     seen: Sequence[tuple[Scale, Scale]], width: int, top: float, height: float
 ) -> list[_Box]:
-    """Return the positions of the panels in a column, with room for labels on the left."""
+    """Return the positions of panels below each other, with room for labels on the left."""
     names = max((len(name) for _, y in seen for name in y.names), default=0)
     left = min(names * _LETTER + 12, 0.45 * width) if names else 58
     count = len(seen)
@@ -195,7 +195,7 @@ def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
 
 
 def _band_edge(value: Any, box: _Box) -> Any:
-    """Return a band's lower edge, moved below the range if it is not positive on a log axis."""
+    """Return the lower edge of a band; on a log axis, a value below zero moves out of view."""
     if box.y.log and value is not None and not value > 0:
         return 10.0 ** (box.y.low - (box.y.high - box.y.low))
     return value
@@ -218,7 +218,7 @@ def _bars(curve: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, 
 
 
 def _rows(curve: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
-    """Yield the SVG of a series' bars, in rows shared with other series of the same names."""
+    """Yield the SVG of the bars of a series; series with equal names share the rows."""
     every = [one for one in every if set(one.y) & set(curve.y)]
     thick = 0.8 * box.height / len(box.y.names) / len(every)
     below = next(k for k, other in enumerate(every) if other is curve) - 0.5 * len(every)
@@ -266,7 +266,7 @@ def _named(axis: Axis) -> str:
 
 
 def _tick(value: float, log: bool, unit: str) -> str:
-    """Return a tick label as in the interactive figure: powers of ten if the axis has a unit."""
+    """Return a tick label as in the interactive figure; with a unit, decades are powers of ten."""
     text = number(value, 6)
     power = math.log10(value) if log else 0.0
     if not (log and unit or "e" in text) or power != round(power) or power in (0, 1):

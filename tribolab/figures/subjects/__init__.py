@@ -1,1 +1,1 @@
-"""Descriptions of all figures, one module per subject."""
+"""Functions that describe the figures, one module per subject."""

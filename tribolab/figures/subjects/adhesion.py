@@ -24,7 +24,7 @@ def adhesive_area(
     *,
     surfaces: Sequence[str] = (),
 ) -> FigureSpec:
-    """Draw the relative contact area over pressure, without adhesion and with it in each medium.
+    """Draw relative contact area against pressure: without adhesion, and with it in each medium.
 
     Dotted: without adhesion; dashed: dry; other lines: the other media.
 
@@ -89,16 +89,16 @@ def effective_work(
     relative_to: Mapping[str, float] | None = None,
     surfaces: Sequence[str] = (),
 ) -> FigureSpec:
-    """Draw the effective work of adhesion over magnification.
+    """Draw the effective work of adhesion against magnification.
 
     Parameters
     ----------
     adhesions
         ``effective_work_of_adhesion`` [J/m2] (medium, wavenumber) with the coordinate
-        ``magnification``, by the surface's name, each at one pressure.
+        ``magnification``, at one pressure, by name of the surface.
     relative_to
-        Work of adhesion gamma_0 [J/m2] of smooth surfaces in each medium: with it
-        gamma_eff/gamma_0 is drawn.
+        Work of adhesion gamma_0 [J/m2] of smooth surfaces in each medium; if given, the figure
+        shows gamma_eff/gamma_0.
     surfaces
         As for `contact_area`.
 

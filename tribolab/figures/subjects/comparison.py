@@ -1,4 +1,4 @@
-"""Figures that compare campaigns, and that show an instrument over time."""
+"""Figures that compare two campaigns, and control charts of an instrument."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
 
-_MANIFOLD = 300.0  # %; larger differences are drawn on a logarithmic scale
-_SPREAD = 0.06  # offset between points of several conditions at one speed
+_MANIFOLD = 300.0  # relative difference [%] above which the scale is logarithmic
+_SPREAD = 0.06  # relative shift in speed between conditions, so that their points do not overlap
 
 
 @plotted()
 def differences(points: pd.DataFrame) -> FigureSpec:
-    """Draw the relative difference between two measured curves over speed.
+    """Draw the relative difference between two measured curves against speed.
 
     Bars: simultaneous 95 % intervals of all differences; filled points differ. Values are relative
     to the first curve.
@@ -106,7 +106,7 @@ def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second
         As in `tribolab.comparison.comparison.Comparison`: ``quantity``, ``of``, ``first``,
         ``difference``, ``low`` and ``high`` of 95 %, ``low_90`` and ``high_90``.
     names
-        Names of the two campaigns, for the axis.
+        Names of the two campaigns, for the label of the axis.
 
     Raises
     ------
@@ -167,9 +167,9 @@ def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second
 
 @plotted()
 def control(table: pd.DataFrame) -> FigureSpec:
-    """Draw one quantity of an instrument over time, with its control limits.
+    """Draw a control chart: one quantity of an instrument against time, with control limits.
 
-    Open points: baseline; red points: signals.
+    Open points: baseline; red points: values that a rule signals as unusual.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def control(table: pd.DataFrame) -> FigureSpec:
                 Series(label, days[part], column["value"][part], "points", columns={}, **own)
             )
     quantity, unit = str(table["quantity"].iloc[0]), str(table["unit"].iloc[0])
-    # a single campaign has no range of days
+    # without a range of days, as for a single campaign, one day on either side
     room = 0.06 * np.ptp(days) or 1.0
     date = Axis("date", "date", view=(float(days.min() - room), float(days.max() + room)))
     y = Axis(quantity, "" if unit == "1" else unit)

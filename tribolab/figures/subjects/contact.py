@@ -20,20 +20,20 @@ _MPA, _MM, _UM = 1e-6, 1e3, 1e6
 _MAX_NAMED_LOADS = 5
 PRESSURE_AXIS = axis_of("pressure", unit="MPa", log=True)
 AREA_AXIS = axis_of("contact_area_ratio", log=True, decades=4)  # smaller areas are negligible
-_MAX_POINTS = 200  # largest number of points per line if there are several loads
+_MAX_POINTS = 200  # largest number of points of a line
 
 
 @plotted()
 def contact_area(
     contacts: SurfaceOrSeveral, loads: xr.Dataset | None = None, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the relative contact area without adhesion over pressure, and mark the Hertz pressures.
+    """Draw the relative contact area without adhesion against pressure, and mark Hertz pressures.
 
     Parameters
     ----------
     contacts
         ``contact_area_ratio`` (pressure), with ``_low`` and ``_high`` if known, by the surface's
-        name, or one dataset over (surface, pressure).
+        name, or one dataset (surface, pressure).
     loads
         ``pressure`` and ``normal_force`` (load): the mean Hertz pressures to mark.
     surfaces
@@ -75,7 +75,7 @@ def contact_area(
 def area_series(
     name: str, data: xr.Dataset, style: Style, colour: int, what: str = "", medium: str = ""
 ) -> list[Series]:
-    """Return the contact area of a surface, and its band, as series."""
+    """Return the contact area of a surface as a line, and its band if it is known."""
     x, area = _MPA * data["pressure"].values, data["contact_area_ratio"].values
     label = f"{name}, {what}" if what else name
     hover = (label,) if what else ()
@@ -102,7 +102,7 @@ def hertz_marks(loads: xr.Dataset | None) -> tuple[Mark, ...]:
 
 @plotted()
 def gaps(distributions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw the gap distribution as u P(u) over ln u, where equal areas are equal probabilities.
+    """Draw the gap distribution as u P(u) against ln u, where equal areas are equal probabilities.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def gaps(distributions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> Fi
     colours = surface_colours([*surfaces, *distributions])
     series = []
     for name, data in distributions.items():
-        smallest = data.attrs.get("cutoff_m", 0.0)  # smaller gaps are below the size of an atom
+        smallest = data.attrs.get("cutoff_m", 0.0)  # size of an atom: smaller gaps have no meaning
         for load, line in by_load(data):
             u = line["gap"].values
             share = u * line["gap_density"].values
@@ -150,14 +150,14 @@ def line_pressure(
     *,
     surfaces: Sequence[str] = (),
 ) -> FigureSpec:
-    """Draw the pressure across dry rough line contacts, and the Hertz pressure.
+    """Draw the pressure across dry line contacts of rough surfaces, and the Hertz pressure.
 
     Parameters
     ----------
     lines
         ``pressure`` [Pa] and ``x`` [m] (point or x; load) by the surface's name.
     hertz
-        x [m] and pressure [Pa] of the smooth contact.
+        Coordinate x [m] and pressure [Pa] of the smooth contact.
     surfaces
         As for `contact_area`.
 
@@ -205,7 +205,7 @@ def line_pressure(
 def contact_separation(
     separations: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the contact pressure over the mean separation in units of the rms roughness.
+    """Draw the contact pressure against the mean separation divided by the rms roughness.
 
     Parameters
     ----------

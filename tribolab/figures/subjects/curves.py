@@ -1,4 +1,4 @@
-"""Figures of friction over speed: measured Stribeck curves, with or without a model."""
+"""Figure of friction against speed: measured Stribeck curves, with or without a model."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, axis_of
 
 Scale = Literal["auto", "log", "linear"]
-MIN_RATIO_FOR_LOG = 5.0  # ratio of highest to lowest µ below which a linear axis shows the minimum
-_DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first recorded one is drawn
-# coordinates of a dataset with several curves, and equivalent attributes of a single curve
+MIN_RATIO_FOR_LOG = 5.0  # ratio of highest to lowest µ from which the axis is logarithmic
+_DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first available is drawn
+# coordinate of a dataset with several curves: the attribute with the same meaning in one curve
 _ATTRIBUTES = {
     "surface": "surface",
     "medium": "medium",
@@ -41,7 +41,7 @@ def stribeck(
     errors: ErrorBars = "U95",
     scale: Scale = "auto",
 ) -> FigureSpec:
-    """Draw friction coefficients over the logarithm of the sliding speed.
+    """Draw friction coefficients against sliding speed (on a logarithmic axis).
 
     Markers: means; bars: U95. Dry contacts have open markers and dashed lines. If no speed is
     known, the segments are numbered; if no load is known, the friction force is drawn.
@@ -51,7 +51,7 @@ def stribeck(
     measured
         One or several measured curves (sliding_speed) or friction results (segment). The
         attributes ``surface``, ``medium`` and ``normal_force_N`` name their conditions; a dataset
-        over (surface, medium, normal_force, ...), or some of them, contains several curves.
+        with any of the dims (surface, medium, normal_force, run) contains several curves.
     model
         One or several calculated curves (sliding_speed), drawn as lines in the colour of the
         surface, with ``friction_coefficient_low`` and ``_high`` as a band.
@@ -126,7 +126,7 @@ def _listed(curves: MeasuredCurves) -> list[xr.Dataset]:
 
 
 def _each(curves: xr.Dataset) -> list[xr.Dataset]:
-    """Return the curves of a dataset one by one, labelled by its coordinates."""
+    """Split a dataset into its curves; the attributes of each name its conditions."""
     varying = {dim for name in _DRAWN if name in curves for dim in curves[name].dims}
     along = [dim for dim in ("surface", "medium", "normal_force", "run") if dim in varying]
     if not along:
@@ -166,7 +166,7 @@ def _load(curve: xr.Dataset) -> float | None:
 
 
 class CurveLook(NamedTuple):
-    """Style of a curve: label, colour, shade, marker, and labels of the series."""
+    """Look of a curve: label, colour, shade and marker; and the conditions of its series."""
 
     label: str
     colour: int
@@ -176,7 +176,7 @@ class CurveLook(NamedTuple):
 
 
 def curve_looks(curves: Sequence[xr.Dataset], surfaces: Sequence[str] = ()) -> list[CurveLook]:
-    """Return the style of each curve: colour by surface, shade and marker by load.
+    """Return the look of each curve: colour by surface, shade and marker by load.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def curve_looks(curves: Sequence[xr.Dataset], surfaces: Sequence[str] = ()) -> l
 
 
 def _difference(curve: xr.Dataset, curves: Sequence[xr.Dataset]) -> str:
-    """Return text on what distinguishes a curve from the others in the figure."""
+    """Return as a label the conditions in which a curve differs from the others in the figure."""
     words = []
     for name in ("surface", "medium"):
         if len({_attribute(c, name) for c in curves}) > 1 and _attribute(curve, name):

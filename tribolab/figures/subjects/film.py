@@ -1,4 +1,4 @@
-"""Figures of lubricated contacts: film profiles, flow and friction factors."""
+"""Figures of the liquid film: its profile across the contact, flow and friction factors."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _PANELS = (
     ),
     ("fluid_pressure", 1e-6, Axis("p liquid", "MPa", paper=r"fluid pressure $p_{\mathrm{fluid}}$")),
 )
-_NOTHING = 1e-3  # share of the maximum pressure below which a profile ends
-_WIDEST_GAP = 100.0  # ratio of the largest to the smallest gap drawn
+_NOTHING = 1e-3  # share of the maximum pressure below which a profile is cut off
+_WIDEST_GAP = 100.0  # largest ratio of two gaps that are drawn
 _MAX_POINTS = 160  # largest number of points of a profile
 _ACROSS = Axis("across the contact", "mm", paper="coordinate $x$")
 _FACTORS: tuple[tuple[str, str, Style, int], ...] = (
@@ -44,9 +44,8 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
     Parameters
     ----------
     profiles
-        ``x``, ``separation`` [m], ``contact_pressure``, ``fluid_pressure`` [Pa] over
-        (sliding_speed, point); or several results of `tribolab.lubrication.film_profile`, each
-        over (x).
+        ``x``, ``separation`` [m], ``contact_pressure``, ``fluid_pressure`` [Pa] (sliding_speed,
+        point); or several results of `tribolab.lubrication.film_profile` (x).
 
     Examples
     --------
@@ -92,13 +91,13 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
 def lubrication_factors(
     factors: Mapping[str, xr.Dataset] | xr.Dataset, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw flow and friction factors over separation in units of the rms roughness.
+    """Draw flow factors and friction factors against separation divided by the rms roughness.
 
     Parameters
     ----------
     factors
         The five factors (separation) with the attribute ``rms_roughness_m``, by the surface's
-        name; or over (surface, relative_separation), from
+        name; or one dataset (surface, relative_separation), from
         `tribolab.lubrication.relative_flow_factors`.
     surfaces
         All surfaces of the study in their order, so that each has the same colour in all figures.

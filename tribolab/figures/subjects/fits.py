@@ -1,4 +1,4 @@
-"""Figures of the joint fit to all loads, and of the sensitivity of a model."""
+"""Figures of a joint fit to all loads, and of the sensitivity of a model to its inputs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.figures.subjects.curves import SPEED_AXIS
 
 
 class FittedCurves(Protocol):
-    """Attributes of a `JointFit` that the figure needs: its points and its curves."""
+    """Result of a joint fit, as far as the figure needs it: its points and its curves."""
 
     @property
     def points(self) -> xr.Dataset:
@@ -30,7 +30,7 @@ class FittedCurves(Protocol):
 
 @plotted(panels=2)
 def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw the curves of a joint fit with their bands, and the relative residuals.
+    """Draw the curves of a joint fit at all loads with their bands, and the relative residuals.
 
     Above: points with 95 % intervals of their own errors; the model at each load with the 95 % band
     of its parameters and of the errors shared by the points of a load. Below: the relative
@@ -42,7 +42,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
     fit
         From `tribolab.fit.fit_shear_stress_jointly`.
     surface, surfaces
-        Its name, if there is only one, and all names of the study in their order, for the colours.
+        Name of the surface if there is only one, and all names of the study, for the colours.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
 
 
 def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Arguments]:
-    """Return the style of each curve: colour by surface, shade by load, marker by medium."""
+    """Return the look of each curve: colour by surface, shade by load, marker by medium."""
     own = [str(name) or surface for name in curves["surface"].values]
     colours = surface_colours([*surfaces, *own])
     loads = curves["load"].values
@@ -89,7 +89,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
     for name, load in zip(own, loads, strict=True):
         of_surface = np.unique(loads[[other == name for other in own]])
         rank = int(np.searchsorted(of_surface, load))
-        again = seen.count((name, load))  # another medium was measured at this load
+        again = seen.count((name, load))  # number of other media with this surface and load
         seen.append((name, load))
         shade = shade_of(rank, of_surface.size)
         marker = rank + again * of_surface.size
@@ -98,7 +98,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
 
 
 def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) -> list[Series]:
-    """Return the series of one load: band, line, points and residuals."""
+    """Return the series for one load: band, line, points, residuals and their shared part."""
     v, measured = curve["sliding_speed"].values, points["sliding_speed"].values
     mu, sem = (points[f"friction_coefficient{end}"].values for end in ("", "_sem"))
     off, shared = (
@@ -124,7 +124,7 @@ def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) 
 def model_sensitivity(
     uncertainty: xr.Dataset, *, surface: str = "", surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the band of a computed curve, and its sensitivity to each uncertain input.
+    """Draw a computed curve with its band, and its sensitivity to each uncertain input.
 
     Bars: the largest change of mu over all speeds, up and down, relative to the peak of the curve,
     for the low and the high end of each range; the longest on top.
@@ -134,7 +134,7 @@ def model_sensitivity(
     uncertainty
         From `tribolab.fit.model_uncertainty`.
     surface, surfaces
-        Its name, and all names of the study in their order, for the colour.
+        Name of the surface, and all names of the study in their order, for the colour.
 
     Examples
     --------

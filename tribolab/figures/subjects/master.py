@@ -1,4 +1,4 @@
-"""Figure of the master curve: friction in several liquids over viscosity times speed."""
+"""Figure of the master curve: friction in several liquids against viscosity times speed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
 from tribolab.fit.master_curve import Collapse
 
-# Film ratio h/h_rms at which mixed lubrication begins and ends (G. Stachowiak, A. Batchelor,
+# Film ratios h/h_rms between which lubrication is mixed (G. Stachowiak, A. Batchelor,
 # Engineering Tribology, 2013, Ch. 7)
 _MIXED = ((1.0, "boundary | mixed"), (3.0, "mixed | full film"))
 
@@ -27,7 +27,7 @@ def master_curve(
     model: xr.Dataset | None = None,
     rms_roughness: float = 0.0,
 ) -> FigureSpec:
-    """Draw friction in several liquids over viscosity times speed, with the lubrication regimes.
+    """Draw friction in several liquids against viscosity times speed, with lubrication regimes.
 
     Parameters
     ----------
@@ -90,13 +90,13 @@ def _speed(curve: xr.Dataset) -> np.ndarray:
 
 
 def _reduced(curve: xr.Dataset, viscosity: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return viscosity times speed [N/m] and friction of all points that are not at rest."""
+    """Return viscosity times speed [N/m] and friction of the points with a speed above zero."""
     speed = _speed(curve)
     return viscosity * speed[speed > 0], curve["friction_coefficient"].values[speed > 0]
 
 
 def _regimes(at: np.ndarray, film: np.ndarray) -> tuple[Mark, ...]:
-    """Return lines at the limits of mixed lubrication, labelled by film ratio."""
+    """Return lines at the limits of mixed lubrication, labelled with the regimes on both sides."""
     marks = [Mark("y", limit, style="dotted", panel=1) for limit, _ in _MIXED]
     for limit, text in _MIXED:
         if film[0] < limit < film[-1]:

@@ -52,13 +52,13 @@ def mixed_curve(
         ``friction_coefficient_residual`` from `tribolab.fit_shear_stress`: the group "fit" of a
         model's data file.
     curve
-        The model over a wider range of speeds, with its parts.
+        The model in a wider range of speeds, with its solid and viscous parts.
     uncertainty
-        From `tribolab.fit.model_uncertainty`: the band of the model.
+        Band of the model, from `tribolab.fit.model_uncertainty`.
     dry
         The measured curve of the dry contact at the same load.
     surface, surfaces
-        Its name, and all names of the study in their order, for the colour.
+        Name of the surface, and all names of the study in their order, for the colour.
     errors
         ``"U95"`` or ``"std"``, as for `tribolab.plot.stribeck`.
     scale
@@ -142,7 +142,7 @@ def _measured(data: xr.Dataset, text: str, errors: ErrorBars, own: Arguments) ->
 
 @plotted()
 def shear_stress(table: pd.DataFrame, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw fitted shear stresses over load, as fitted and for the contact area with adhesion.
+    """Draw fitted shear stresses against load, for the contact area without and with adhesion.
 
     Open symbols: effective, for the area without adhesion, with the 95 % interval. Filled:
     corrected for adhesion, with U95. Bars end at zero, since no shear stress is negative.
@@ -215,7 +215,7 @@ def shear_stress(table: pd.DataFrame, *, surfaces: Sequence[str] = ()) -> Figure
     )
 
 
-_UNITS = ("_N", "_Pa")  # endings of the columns of `figure_data` with a unit
+_UNITS = ("_N", "_Pa")  # endings of the columns that `figure_data` returns
 
 
 @plotted()
@@ -225,7 +225,7 @@ def friction_factor_effect(
     scale: Literal["log", "linear"] = "log",
     surfaces: Sequence[str] = (),
 ) -> FigureSpec:
-    """Draw computed curves with and without the friction factors of rough surfaces.
+    """Draw computed friction with and without the friction factors of rough surfaces.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ def friction_factor_effect(
 def shear_stress_over_speed(
     curves: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the shear stress in the real contact area over sliding speed.
+    """Draw the shear stress in the real contact area against sliding speed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Figures of precision: uncertainty budget, repeatability, number of runs needed."""
+"""Figures for planning: uncertainty budget, repeatability, number of runs needed."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.metrology.budget_result import UncertaintyBudget
 
-_MIN_SHARE = 1e-3  # share of the largest contribution below which a contribution has no bar
-_SPREAD = 0.06  # offset between points at one speed
+_MIN_SHARE = 1e-3  # contributions below this share of the largest one have no bar
+_SPREAD = 0.06  # relative shift in speed, so that two points at one speed do not overlap
 
 
 @plotted()
@@ -29,7 +29,7 @@ def uncertainty_budget(budget: UncertaintyBudget, at: int | None = None) -> Figu
     budget
         From `tribolab.metrology.uncertainty_budget`.
     at
-        Number of the segment or speed, from 0; None for the typical one.
+        Index of the segment or speed; None for a typical one.
 
     Examples
     --------
@@ -67,7 +67,7 @@ _ASSURED = {"runs": "assured_runs", "cheapest_runs": "cheapest_assured_runs"}
 
 @plotted()
 def runs_needed(table: pd.DataFrame) -> FigureSpec:
-    """Draw the number of runs needed to reach a precision, over speed.
+    """Draw the number of runs that reach a wanted precision, against speed.
 
     Filled: runs that slide as long as those of the pilot; open: runs of the cheapest sliding time;
     bars up to the number of runs that reaches the precision with assurance.
@@ -120,9 +120,9 @@ def runs_needed(table: pd.DataFrame) -> FigureSpec:
 
 @plotted()
 def precision(table: pd.DataFrame) -> FigureSpec:
-    """Draw the standard deviations within and between mounts, days ... over speed.
+    """Draw standard deviations within and between mounts, days etc. against speed.
 
-    All of them are relative to the mean, in per cent.
+    All are in per cent of the mean.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Figure of the recorded signals of a run over time."""
+"""Figure of all recorded signals of a run against time."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from tribolab.figures.envelopes import envelope
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import FigureSpec, Panel, Series, axis_of
 
-_COLUMNS = 420  # pixel columns of a double-column panel, two per typographic point
+_COLUMNS = 420  # columns of a panel in which extremes of a signal are drawn
 _FIRST = ("friction_force", "normal_force", "friction_coefficient", "sliding_velocity", "position")
 _MAX_PANELS = 6
 
 
 @plotted(panels=0)
 def run(run: xr.Dataset) -> FigureSpec:
-    """Draw the signals of a run over time as recorded, one panel each.
+    """Draw the signals of a run against time as recorded, one panel each.
 
-    Forces and motion come first; of more than six signals the first six are drawn.
+    Forces and motion come first; at most six signals are drawn.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Figures of stick-slip: traces, events, and the map of waveforms."""
+"""Figures of stick-slip: friction traces, sizes of slip events, waveforms at each speed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tribolab.friction.oscillation.slip_curve import one_curve
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 
 _COLUMNS = 500
-_GAP = 0.25  # gap between stacked traces, as share of the range of the highest
+_GAP = 0.25  # gap between stacked traces, as share of the largest range of a trace
 _MAX_EVENTS = 300  # largest number of points of a distribution
 _LOOKS: dict[str, Arguments] = {
     CLASSES[0]: {"colour": GREY, "marker": 0, "open": True},
@@ -35,9 +35,9 @@ _LOOKS: dict[str, Arguments] = {
 
 
 class Trace(NamedTuple):
-    """One stroke to draw: its label, run, segments and friction, and the segment number.
+    """One stroke to draw: its label, the run with its segments and friction, and its segment.
 
-    `surface` chooses the colour.
+    `surface` determines the colour.
 
     Examples
     --------
@@ -59,14 +59,14 @@ class Trace(NamedTuple):
 def slip_traces(
     traces: Sequence[Trace], surfaces: Sequence[str] = (), *, longest: float | None = None
 ) -> FigureSpec:
-    """Draw friction over sliding distance, one stroke above another.
+    """Draw friction against sliding distance, with the strokes stacked above each other.
 
-    Every trace has the same scale; the legend states its shift.
+    All traces have the same scale; the legend states by how much each is shifted.
 
     Parameters
     ----------
     traces
-        From below to above.
+        Strokes, the lowest in the figure first.
     surfaces
         All surfaces of the study in order, for the colours.
     longest
@@ -128,13 +128,13 @@ def slip_traces(
 
 
 def _round_up(shift: float, gap: float) -> float:
-    """Return a shift rounded up to the leading digit of the gap."""
+    """Return a shift rounded up, to the decimals of the leading digit of the gap."""
     digits = -math.floor(math.log10(gap)) if gap > 0 else 2
     return round(math.ceil(round(shift * 10.0**digits, 6)) / 10.0**digits, max(digits, 0))
 
 
 def _shift_text(shift: float) -> str:
-    """Return text on the shift of a trace.
+    """Return text for the legend on how far a trace is shifted.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def _shift_text(shift: float) -> str:
 
 
 def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """Return distance in the trimmed part of a stroke [m], and friction, positive as resistance."""
+    """Return distance [m] and friction of a stroke without its trimmed ends; resistance is > 0."""
     signal = main_signal(trace.run, trace.friction)
     time = trace.run["time"].values
     row = trace.segments.isel(segment=int(trace.segment))
@@ -159,15 +159,15 @@ def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
 
 @plotted(panels=3)
 def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec:
-    """Draw cumulative distributions of drop, recurrence distance and duration of slip events.
+    """Draw the cumulative distributions of drop, distance and slip duration of slip events.
 
-    Cumulative shares need no choice of bins.
+    Unlike histograms, they need no choice of bins.
 
     Parameters
     ----------
     slips
-        Label to a result of `stick_slip`; or such a result, also over further dims; or a list of
-        them. All events count.
+        Results of `stick_slip` by label; or one such result, perhaps with further dims; or a list
+        of them. All events count.
     **labels
         Labels that distinguish the results of a list, one for each, e.g. ``run=["dry", "wet"]``.
 
@@ -205,7 +205,7 @@ def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec
 
 
 def cumulative(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return sorted values and their cumulative shares; very many values are thinned out.
+    """Return sorted values and their cumulative shares, with at most 300 points.
 
     Examples
     --------
@@ -242,15 +242,15 @@ def _event_columns(slip: xr.Dataset) -> list[tuple[Axis, np.ndarray]]:
 
 @plotted()
 def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
-    """Draw waveform class and drop of each condition at each speed.
+    """Draw a map of the waveform class and the drop, for each condition and speed.
 
     Marker and colour: the class; area: the drop.
 
     Parameters
     ----------
     curves
-        Label to a result of `stick_slip_curve`, from below to above; or its result over further
-        dims, from above to below.
+        Results of `stick_slip_curve` by label, the lowest in the figure first; or one result with
+        further dims, the highest first.
 
     Raises
     ------
@@ -301,7 +301,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
 
 
 def _each(curves: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return the curves of a dataset by label, the last first."""
+    """Return the curves in a dataset by label, in reverse order: the first is drawn on top."""
     named = {label: one_curve(part) for label, part in parts(curves, "sliding_speed").items()}
     return {label: part for label, part in reversed(named.items()) if part.sizes["sliding_speed"]}
 

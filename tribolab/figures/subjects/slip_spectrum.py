@@ -1,4 +1,4 @@
-"""Figures of stick-slip spectra over frequency, and over frequency and speed."""
+"""Figures of stick-slip: power spectra, and power against speed and frequency."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
 
-_LOUDEST, _QUIETEST = 3.0, 0.3  # highest and lowest level of a map, as log10 of power over noise
+_LOUDEST, _QUIETEST = 3.0, 0.3  # highest and lowest value of a map: log10(power / noise)
 Slips = Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset]
 
 
 @plotted(panels=0)
 def slip_spectra(slips: Slips, *, segment: int = 0, **labels: Sequence[RunLabel]) -> FigureSpec:
-    """Draw the power spectra of segments, with background and noise limit.
+    """Draw the power spectra of friction in segments, with the noise and its significance limit.
 
-    A panel for each; the dominant oscillation and lines of the mains are marked.
+    One panel per segment. The dominant oscillation and the mains frequency are marked.
 
     Parameters
     ----------
     slips
-        Label to a result of `stick_slip` and the number of its segment; or such a result, also over
-        further dims; or a list of them.
+        Results of `stick_slip` by label, each with the index of a segment; or one such result,
+        perhaps with further dims; or a list of them.
     segment
-        Number of the segment for results without one.
+        Index of the segment, for results that are given without one.
     **labels
         Labels that distinguish the results of a list, one for each, e.g. ``run=["dry", "wet"]``.
 
@@ -88,7 +88,7 @@ def slip_spectra(slips: Slips, *, segment: int = 0, **labels: Sequence[RunLabel]
 
 
 def _heading(label: str, row: xr.Dataset) -> str:
-    """Return a label with the waveform and the dominant frequency."""
+    """Return the heading of a panel: label, waveform and dominant frequency."""
     words = " ".join(filter(None, (str(row["regularity"].item()), str(row["waveform"].item()))))
     own = row["dominant_frequency"].item()
     return f"{label}: {words}" + (f", {own:.3g} Hz" if np.isfinite(own) else "")
@@ -96,14 +96,14 @@ def _heading(label: str, row: xr.Dataset) -> str:
 
 @plotted(panels=0)
 def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
-    """Draw the ratio of power to noise over speed and frequency, a panel for each run.
+    """Draw the ratio of power to noise against speed and frequency, a panel for each run.
 
     Only power of at least twice the noise is drawn. Crosses: dominant oscillation.
 
     Parameters
     ----------
     slips
-        Label to a result of `stick_slip`.
+        Results of `stick_slip` by label.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
 
 
 def power_levels(slip: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Return speed, frequency and log10 of power over noise where power exceeds twice the noise.
+    """Return speed, frequency and log10(power / noise) wherever power exceeds twice the noise.
 
     None if no segment has a spectrum.
     """

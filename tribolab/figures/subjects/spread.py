@@ -1,4 +1,4 @@
-"""Figures of the scatter of friction: half loops of stroke pairs, error bars over speed."""
+"""Figures of the scatter of friction: half loops of stroke pairs, and lengths of error bars."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from tribolab.figures.subjects.curves import SPEED_AXIS, curve_looks
 
 @plotted()
 def half_loop(friction: xr.Dataset) -> FigureSpec:
-    """Draw half the force difference of each stroke pair, which is friction without offset.
+    """Draw the half loop of each pair of strokes: the friction force without its offset.
 
-    Points: a pair each, in the order of the run; line: their mean.
+    One point for each pair, in the order of the run; the line is their mean.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def half_loop(friction: xr.Dataset) -> FigureSpec:
 def friction_spread(
     measured: xr.Dataset | Sequence[xr.Dataset], *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw measured friction with its error bars over speed, and the bar lengths below.
+    """Draw friction with error bars against speed, and below it the lengths of these bars.
 
     Above: bars of one standard deviation while sliding, the error bar of the reference study; lines
     guide the eye. Below: the standard deviation with filled markers, the expanded uncertainty of

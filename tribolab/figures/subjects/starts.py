@@ -1,4 +1,4 @@
-"""Figures of static friction, and of friction in each cycle."""
+"""Figures of static friction at each start, and of friction in each cycle."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _TREND = 0.01  # p value below which a linear trend is drawn
 def static_friction(
     starts: xr.Dataset | Mapping[str, xr.Dataset], *, over: str = "waiting_time"
 ) -> FigureSpec:
-    """Draw static friction over the rest before each start, and sliding friction.
+    """Draw static friction against the rest before each start, with the sliding friction.
 
-    Filled markers: static friction with its standard error; open ones: starts that do not exceed
-    the sliding friction that follows; hexagons: that sliding friction.
+    Filled: static friction with its standard error; open: starts whose friction does not exceed the
+    sliding friction after them; hexagons: that sliding friction.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def static_friction(
 
 @plotted()
 def cycles(friction: xr.Dataset | Mapping[str, xr.Dataset]) -> FigureSpec:
-    """Draw the friction coefficient of each cycle over the cycle number.
+    """Draw the friction coefficient of each cycle against the cycle number.
 
     Dots: from the forces in the middle of the strokes; grey line: from the energy of the loop, if
     known; dashes: the linear trend, if significant (p < 1 %).

@@ -1,4 +1,4 @@
-"""Figure of all strokes of a run side by side, one panel per speed."""
+"""Figure of all strokes of a run: friction against distance, one panel per speed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tribolab.figures.subjects.traces import MEAN, SHADES, Span, friction_axis
 
 _LINES = {1: BLACK, -1: ORANGE, 0: SKY}
 _MAX_PANELS, _MAX_LINES = 24, 6  # largest numbers of panels, and of lines per direction and panel
-_POINTS = 1700  # pixel columns in all panels together, which keeps the figure below 150 kB
+_POINTS = 1700  # total number of pixel columns, so that the file is smaller than 150 kB
 _TOLERANCE = 0.05  # largest relative difference between speeds that count as equal
 _Item = TypeVar("_Item")
 
@@ -29,12 +29,12 @@ _Item = TypeVar("_Item")
 def strokes(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset | None = None
 ) -> FigureSpec:
-    """Draw each segment over its own sliding distance, one panel per speed, slowest first.
+    """Draw friction against distance along each stroke, one panel per speed, slowest first.
 
     A run that takes 1000 s at 1 um/s and 1 s at 1 cm/s cannot be judged on one time axis; here
     every speed has the same width. Forward and backward strokes overlap, both positive in their own
-    direction; the trimmed ends are grey. Of many strokes at one speed a regular selection is drawn,
-    as the panel states.
+    direction; the trimmed ends are grey. Of many strokes at one speed only some are drawn, as the
+    panel's title states.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def strokes(
 def _strokes_of_speed(
     group: list[Stroke], signal: Signal, friction: xr.Dataset | None, budget: int, panel: int
 ) -> tuple[list[Series], str, Span]:
-    """Return the strokes of one speed, text on their mean, and the range between trimmed ends."""
+    """Return the series at one speed, text on the mean, and the range between trimmed ends."""
     series, ends = [], []
     for part in _chosen(group):
         length = part.distance[-1] or 1.0
@@ -124,7 +124,7 @@ def _strokes_of_speed(
 
 
 def _view(series: Sequence[Series], ends: Span) -> Span:
-    """Return axis limits that fit the strokes between their trimmed ends."""
+    """Return limits of the ordinate that fit the strokes between their trimmed ends."""
     inside = []
     for one in series:
         x, y = np.asarray(one.x, float), np.asarray(one.y, float)
@@ -165,7 +165,7 @@ def _chosen(group: list[Stroke]) -> list[Stroke]:
 
 
 def _sign(part: Stroke, signal: Signal, friction: xr.Dataset | None) -> float:
-    """Return the sign that makes friction positive in both directions, also if it was rectified."""
+    """Return the sign that makes friction positive in both directions, even after rectification."""
     if friction is not None and "friction_coefficient" in friction:
         values = signal.values[part.samples]
         values = values[np.isfinite(values)]

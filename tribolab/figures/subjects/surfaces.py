@@ -1,4 +1,4 @@
-"""Figures of surfaces and rubber: profiles, spectra, modulus, viscoelastic friction."""
+"""Figures of surfaces (profiles, spectra) and of rubber (modulus, viscoelastic friction)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series, Style, a
 from tribolab.surface.form import remove_form
 
 _MEASURED = 0
-_COLUMNS = 600  # pixel columns of a profile, each with its minimum and maximum
+_COLUMNS = 600  # columns of a profile in which minimum and maximum are drawn
 _BETWEEN = 0.1  # gap between profiles, as share of a profile's height range
 
 
@@ -26,13 +26,13 @@ _BETWEEN = 0.1  # gap between profiles, as share of a profile's height range
 def profiles(
     scans: SurfaceOrSeveral, *, form: str = "none", surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw a profile of each surface, one above another.
+    """Draw one profile of each surface, stacked above each other.
 
     Parameters
     ----------
     scans
-        ``height`` (x or y, x; first ``scan`` if there are several) by the surface's name. Of a map
-        the row in its middle is drawn; missing heights are gaps.
+        ``height`` (x) or (y, x) by the surface's name; of several scans (``scan``), the first is
+        drawn, and of a map its middle row. Missing heights are gaps.
     form
         Form to remove, as for `tribolab.surface.remove_form`.
     surfaces
@@ -77,12 +77,12 @@ def profiles(
 
 @plotted()
 def spectra(psds: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw two-dimensional power spectra with bands; extrapolated parts are dashed.
+    """Draw two-dimensional roughness power spectra with bands; extrapolated parts are dashed.
 
     Parameters
     ----------
     psds
-        Spectra with ``psd_2d`` (wavenumber) by the surface's name, or one dataset over (surface,
+        Spectra with ``psd_2d`` (wavenumber) by the surface's name, or one dataset (surface,
         wavenumber); ``psd_2d_low``, ``psd_2d_high`` and ``origin`` if known.
     surfaces
         All surfaces of the study in their order, so that each has the same colour in all figures.
@@ -147,7 +147,7 @@ def _spectrum(name: str, psd: xr.Dataset, colour: int) -> list[Series]:
         (origin != _MEASURED, "dashed"),
     )
     for part, style in styles:
-        # parts overlap by one point, which leaves no gap between them
+        # dashed parts start and end on the solid line, so that there is no gap
         joined = part | (np.roll(part, 1) & (np.arange(q.size) > 0) & (style == "dashed"))
         joined |= np.roll(part, -1) & (np.arange(q.size) < q.size - 1) & (style == "dashed")
         if part.any():
@@ -162,7 +162,7 @@ def _spectrum(name: str, psd: xr.Dataset, colour: int) -> list[Series]:
 
 @plotted()
 def modulus(table: xr.Dataset) -> FigureSpec:
-    """Draw storage and loss modulus over angular frequency.
+    """Draw storage and loss modulus against angular frequency.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def modulus(table: xr.Dataset) -> FigureSpec:
     surface = str(table.attrs.get("surface", ""))
     values = {name: table[f"{name}_modulus"].values / 1e6 for name in ("storage", "loss")}
     kept = {name: np.where(value > 0, value, np.nan) for name, value in values.items()}
-    # a figure of one rubber: lines differ by quantity, not by surface
+    # colours distinguish the two moduli, because there is only one rubber
     return FigureSpec(
         title="Modulus of the rubber",
         panels=(Panel(axis_of("angular_frequency", log=True), Axis("modulus", "MPa", log=True)),),
@@ -200,7 +200,7 @@ def modulus(table: xr.Dataset) -> FigureSpec:
 
 @plotted()
 def viscoelastic(frictions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw the viscoelastic friction coefficient over sliding speed.
+    """Draw the viscoelastic friction coefficient against sliding speed.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def viscoelastic(frictions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -
 
 
 def shaded_loads(series: Sequence[Series]) -> tuple[Series, ...]:
-    """Return series shaded by load, dark for the lowest; series without a load stay unchanged."""
+    """Return series shaded by load, the lowest darkest; series without a load are unchanged."""
     loads = sorted({one.load for one in series if one.load is not None})
     return tuple(
         one if one.load is None else replace(one, shade=shade_of(loads.index(one.load), len(loads)))

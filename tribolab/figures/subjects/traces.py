@@ -1,4 +1,4 @@
-"""Figure of the friction of a run over time and over distance."""
+"""Figure of the friction of a run against time and distance, with its segments."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
 
-_COLUMNS = 420  # pixel columns of a double-column panel, two per typographic point
+_COLUMNS = 420  # columns of a panel in which extremes of a signal are drawn
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
 # colours of directions, distinct from those of surfaces
 SHADES = {1: (GREY, "forward"), -1: (ORANGE, "backward"), 0: (SKY, "direction unknown")}
 MEAN = VERMILLION
 _MAX_MARKED = 60  # largest number of segments that are shaded one by one
-_ROOM = 0.2  # space above a trace, as share of its range
+_ROOM = 0.2  # space for labels above a trace, as share of the range of the trace
 
 
 def friction_axis(name: str) -> Axis:
-    """Return the axis of the friction coefficient or friction force of a run."""
+    """Return the ordinate for the friction coefficient or the friction force of a run."""
     if name == "friction_coefficient":
         paper = "friction coefficient\n" + r"$\mu = F_x/F_{\mathrm{N}}$"
         return Axis("friction coefficient µ", paper=paper, column=name)
@@ -37,10 +37,10 @@ def friction_axis(name: str) -> Axis:
 def trace(
     run: xr.Dataset, segments: xr.Dataset | None = None, friction: xr.Dataset | None = None
 ) -> FigureSpec:
-    """Draw a run over time and over sliding distance, with its segments shaded.
+    """Draw friction in a run against time and sliding distance, with its segments shaded.
 
-    Panels: friction coefficient (or force, if no load was recorded) over time; sliding velocity
-    (else set speed, else position) over time; friction over the distance slid in the segments.
+    Panels: friction coefficient (or force, if no load was recorded) against time; sliding velocity
+    (else set speed or position) against time; friction against the distance slid in the segments.
     Missing or constant signals have no panel.
 
     Parameters
@@ -95,7 +95,7 @@ def trace(
             Panel(time_axis, _motion_axis(motion, values, segments), height=0.6, name="motion")
         )
     if segments is not None:
-        places = [_stretch(part.number, segments) for part in parts]
+        places = [_ends(part.number, segments) for part in parts]
         for panel in range(len(panels)):
             marks += _shaded(parts, places, panel, named=panel == 0)
         series += _means(parts, [inner for _, inner in places], signal, friction, 0)
@@ -118,7 +118,7 @@ def trace(
 
 
 def _motion_axis(name: str, values: np.ndarray, segments: xr.Dataset | None) -> Axis:
-    """Return the axis of a motion signal, logarithmic down to the slowest segment."""
+    """Return the ordinate of a motion signal; for a speed, it is logarithmic except near zero."""
     largest = float(np.nanmax(np.abs(values), initial=0.0))
     speeds = np.zeros(0) if segments is None else np.asarray(segments["sliding_speed"], float)
     speeds = speeds[np.isfinite(speeds) & (speeds > 0)]
@@ -130,8 +130,8 @@ def _motion_axis(name: str, values: np.ndarray, segments: xr.Dataset | None) -> 
 Span = tuple[float, float]
 
 
-def _stretch(number: int, segments: xr.Dataset) -> tuple[Span, Span]:
-    """Return the start and stop of a whole segment, and of its trimmed part."""
+def _ends(number: int, segments: xr.Dataset) -> tuple[Span, Span]:
+    """Return start and stop [s] of a segment, and those of its part between the trimmed ends."""
     row = segments.isel(segment=number)
     ends = [float(row[n]) for n in ("start", "stop", "trimmed_start", "trimmed_stop")]
     return (ends[0], ends[1]), (ends[2], ends[3])
@@ -140,7 +140,7 @@ def _stretch(number: int, segments: xr.Dataset) -> tuple[Span, Span]:
 def _shaded(
     parts: Sequence[Stroke], places: Sequence[tuple[Span, Span]], panel: int, *, named: bool
 ) -> list[Mark]:
-    """Return the shading of segments (dark, trimmed ends light); many segments are merged."""
+    """Return the shading of up to 60 segments: dark, with light trimmed ends."""
     marks = []
     last = ""
     every = max(1, -(-len(parts) // _MAX_MARKED))
@@ -167,7 +167,7 @@ def _means(
     parts: Sequence[Stroke], spans: Sequence[Span], signal: Signal, friction: xr.Dataset | None,
     panel: int,
 ) -> list[Series]:  # fmt: skip
-    """Return a line at the mean of each segment, with the sign of its stroke."""
+    """Return lines at the mean friction of each segment, negative in backward strokes."""
     if friction is None or signal.name not in friction or not parts:
         return []
     mean = np.asarray(friction[signal.name], float)[[part.number for part in parts]]

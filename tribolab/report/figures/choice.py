@@ -7,8 +7,6 @@ from typing import Literal
 from tribolab.core.errors import ConfigError, shown
 
 Wanted = Literal["all", "curves", "none"]
-
-
 _WANTED: dict[str, Wanted] = {"all": "all", "curves": "curves", "none": "none"}
 
 

@@ -75,14 +75,8 @@ OF_CONTACT = frozenset(("A/A₀", "Pull-off force"))
 # terms that only pages with a model need
 OF_MODELS = frozenset(
     (
-        *(
-            "Shear stress σ",
-            "95 % interval",
-            "χ² per degree of freedom",
-            "Runs test p",
-            "Forced wetting",
-        ),
-        "Macroscopic instability, controlled by adhesion",
+        *("Shear stress σ", "95 % interval", "χ² per degree of freedom", "Runs test p"),
+        *("Forced wetting", "Macroscopic instability, controlled by adhesion"),
     )
 )
 

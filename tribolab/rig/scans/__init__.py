@@ -1,1 +1,1 @@
-"""Simulated scans of rough surfaces, with and without faults."""
+"""Simulated roughness scans, with and without faults."""

@@ -1,4 +1,4 @@
-"""Faults of real profilometers that can be added to simulated scans, one for each check."""
+"""Faults of real scans that can be added to simulated ones, each with the check that finds it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Strike = Callable[[xr.Dataset, np.random.Generator], xr.Dataset]
 
 @dataclass(frozen=True)
 class ScanFault:
-    """Fault of scans: its effect, its severity, and the check that must find it.
+    """Fault in the scans of a surface, and the check that must find it.
 
     Attributes
     ----------
@@ -35,9 +35,9 @@ class ScanFault:
     check
         Name of the check on scans that should find it.
     strike
-        ``strike(scans, rng) -> scans``; changes nothing in place.
+        Function ``strike(scans, rng)`` that returns scans with the fault.
     fewest
-        Smallest number of scans of one surface needed to detect it.
+        Fewest scans of one surface with which the fault can be detected.
     """
 
     name: str
@@ -49,7 +49,7 @@ class ScanFault:
 
 
 def exported(scans: xr.Dataset) -> xr.Dataset:
-    """Return simulated scans as read back from their files, with the stated metadata.
+    """Return simulated scans in the form in which scans are read from files, with metadata.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def _change_heights(scans: xr.Dataset, height: np.ndarray, **attrs: float | str) -> xr.Dataset:
-    """Return scans with other heights, rounded to the resolution of the instrument."""
+    """Return scans with new heights, rounded to the resolution of the instrument."""
     digits = np.round(height / 1e-9) * 1e-9
     return scans.assign(height=scans.height.copy(data=digits)).assign_attrs(attrs)
 
@@ -186,7 +186,7 @@ def _uneven(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     rows = [np.interp(places, x, row) for row in scans.height.values]
     brought = [even("scan", places, row) for row in rows]
     resampled = _change_heights(scans, np.stack([b[1] for b in brought]), **brought[0][2])
-    return resampled.assign_coords(recorded_x=("x", places))  # as it is written in the file
+    return resampled.assign_coords(recorded_x=("x", places))  # the uneven x of the file
 
 
 def _wrong_length(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:

@@ -1,4 +1,4 @@
-"""Files of simulated scans with faults."""
+"""Writing of simulated scans with faults."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from tribolab.rig.faults import FAULTS, Fault
 from tribolab.rig.files import scan_file
 from tribolab.rig.scans.faults import SCAN_FAULTS, ScanFault, exported
 
-# Names for `simulate_campaign(faults=...)`: scan_ is added to names that are also faults of runs.
+# names for `simulate_campaign(faults=...)`, with the prefix scan_ if a fault of runs has that name
 SCAN_FAULTS_BY_NAME: dict[str, ScanFault] = {
     f"scan_{name}" if name in FAULTS else name: fault for name, fault in SCAN_FAULTS.items()
 }
 
 
 def fault_of_campaign(name: str) -> Fault | ScanFault:
-    """Return the fault of runs or scans with a given name.
+    """Return the fault with a given name, which is a fault of runs or of scans.
 
     Raises
     ------
     ConfigError
-        If it is unknown; the message names the nearest, or all.
+        If there is no such fault; the message suggests similar names.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def fault_of_campaign(name: str) -> Fault | ScanFault:
 def write_faulty_scans(
     scans: xr.Dataset, faults: Sequence[str], folder: Path, rng: int | np.random.Generator = 0
 ) -> dict[str, dict[str, list[dict[str, str]]]]:
-    """Write simulated scans with faults, as the stylus instrument exports them.
+    """Write simulated scans with faults into files, and return the faults in each file.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def write_faulty_scans(
     """
     rng = np.random.default_rng(rng)
     struck = exported(scans)
-    # the roughness computed by the instrument is exported only if the fault is in it
+    # Ra and Rq of the instrument are exported only if a fault concerns them
     results = any(SCAN_FAULTS_BY_NAME[name].check == "results" for name in faults)
     files = _files(struck, results)
     facts: dict[str, dict[str, list[dict[str, str]]]] = {}
@@ -80,7 +80,7 @@ def write_faulty_scans(
 
 
 def _files(scans: xr.Dataset, results: bool) -> dict[str, bytes]:
-    """Return the text of each scan's file."""
+    """Return the content of the file of each scan, by file name."""
     attrs, x, heights = scans.attrs, scans.x.values, scans.height.values
     if "recorded_x" in scans.coords:  # the traverse moved at uneven speed
         places = scans.recorded_x.values

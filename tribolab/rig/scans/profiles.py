@@ -1,4 +1,4 @@
-"""Simulated stylus profiles of the reference cylinders."""
+"""Simulation of stylus profiles on the cylinders of the reference study."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from tribolab.studies import xu2026
 from tribolab.surface.synthesis import synthesise_profiles
 from tribolab.units.stamping import stamp
 
-_OVERSAMPLING = 2  # points of the simulated surface per sampling pitch
+_OVERSAMPLING = 2  # simulated points per pitch of the recorded profile
 _NOISE = 5e-9  # m, rms noise
 _STEP = 1e-9  # m, height resolution
-_TILT = 0.02  # largest slope of the specimen as mounted
+_TILT = 0.02  # largest slope at which a specimen is mounted
 
 
 def scans(
@@ -22,7 +22,7 @@ def scans(
     seed: int | np.random.Generator = 0,
     length: float | None = None,
 ) -> xr.Dataset:
-    """Return profiles of a cylinder along its circumference, as the paper's stylus traces them.
+    """Return simulated profiles along the circumference of a cylinder, as a stylus traces them.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def scans(
 
 
 def touch(height: np.ndarray, pitch: float, tip_radius: float) -> np.ndarray:
-    """Return the height [m] of a spherical tip that touches profiles (..., x): a dilation."""
+    """Return the height [m] of a spherical tip that slides along profiles (..., x)."""
     # imported late: scipy loads slowly
     from scipy.ndimage import grey_dilation
 
