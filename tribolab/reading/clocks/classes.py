@@ -132,7 +132,7 @@ def coarse_shift(
 def _sums_by_lag(
     sums: list[Array], classes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], list[Array], Iterator[tuple[Array, Array]]]:
-    """Return lags [cells]; at each lag the sums of all samples, and number and sum in each class.
+    """Return lags [cells], the sums of all samples, and number and sum by class at each lag.
 
     Only lags with enough overlap of both logs are included.
     """

@@ -19,7 +19,7 @@ _BLOCK = 1 << 16
 
 
 class _RootReachedError(Exception):
-    """Raised at the end of the declarations of a file."""
+    """Raised to stop parsing at the root element, after all declarations."""
 
 
 def parsed(path: Path, text: bytes) -> ElementTree.Element:

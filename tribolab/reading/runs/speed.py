@@ -222,7 +222,9 @@ def _by_strokes_of_steps(
         columns["set_speed"] = mean_speed
         return
     for first, last, frequency in without:
-        if (time[last] - time[first]) * frequency >= FEWEST_CYCLES:  # only steps with enough cycles
+        if (
+            time[last] - time[first]
+        ) * frequency >= FEWEST_CYCLES:  # a shorter step may show no reversal
             raise ReadError(
                 f"the friction from {time[first]:.4g} to {time[last]:.4g} s does not turn over "
                 f"with the {frequency:.4g} Hz that are stated for it",

@@ -212,7 +212,7 @@ def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:
 
 
 def _number(text: str, mark: str) -> float:
-    """Return a number; NaN if its mark may separate thousands, e.g. 1,024.
+    """Return a number; NaN if its comma or point may separate thousands, e.g. 1,024.
 
     >>> _number("2,5", "."), _number("1,024", ","), _number("1,024", ".")
     (2.5, 1.024, nan)
