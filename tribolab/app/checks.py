@@ -121,7 +121,7 @@ def _files_below(path: Path) -> Iterator[tuple[Sequence[Path], str | None]]:
 
 
 class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
-    """Work of `tribolab check`: a task for each run and for each set of repeated scans.
+    """Tasks of `tribolab check`: one for each run and for each set of repeated scans.
 
     Parameters
     ----------

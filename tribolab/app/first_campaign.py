@@ -160,7 +160,7 @@ def _names(file: Path, paths: Sequence[Path]) -> bool:
 
 
 def withdraw(file: Path, results: Path | None = None) -> None:
-    """Remove a new campaign file whose raw files could not be read, and its empty results.
+    """Remove a new campaign file and its results, because no raw file could be read.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Module that calls `plain_arrays_only` when imported, for worker processes."""
+"""Module for worker processes: its import calls `plain_arrays_only`."""
 
 from tribolab.app.quick import plain_arrays_only
 

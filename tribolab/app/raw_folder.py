@@ -1,4 +1,4 @@
-"""Raw files of a folder by content: runs, scans, moduli or roughness testers' results."""
+"""Search for raw files in a folder, and sorting into runs, scans, moduli and tester results."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MAX_FILES = 5000  # most files of a campaign, so that a whole disk is not searc
 
 
 class RawFiles(NamedTuple):
-    """Raw files by content."""
+    """Raw files, sorted by content; `results` are those of roughness testers."""
 
     runs: list[Path]
     scans: list[Path]

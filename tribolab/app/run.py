@@ -225,7 +225,7 @@ def _refuse_outside_folder(campaign: Campaign, place: Path) -> None:
 
 
 def _refuse_input_folder(campaign: Campaign, place: Path) -> None:
-    """Raise if results would be in the folder of raw files, or if their folder has an input."""
+    """Raise if the results folder is also the folder of raw files, or contains other inputs."""
     raw = campaign.raw.resolve()
     if place.is_relative_to(raw) and _matches_results(campaign, raw, place):
         raise ConfigError(

@@ -172,7 +172,7 @@ def _decades(low: float, high: float, most: int) -> list[float]:
     first, last = math.ceil(low - 1e-9), math.floor(high + 1e-9)
     step = max(1, math.ceil((last - first + 1) / most))
     whole = [float(f"1e{k}") for k in range(last, first - 1, -step)][::-1]
-    if len(whole) > 2:  # fewer decades are divided
+    if len(whole) > 2:  # otherwise, values between the decades are labelled too
         return whole
     parts = (float(f"{m}e{k}") for k in range(first - 1, last + 1) for m in (1, 2, 5))
     seen = [value for value in parts if low <= math.log10(value) <= high]

@@ -1,4 +1,4 @@
-"""Decorator that makes a function which describes a figure into one which draws it."""
+"""Decorator that turns a function that describes a figure into one that draws it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers, speeds and lists as text for readers: without exponents, with unit prefixes."""
+"""Conversion of numbers, speeds and lists to plain text, e.g. with unit prefixes."""
 
 from __future__ import annotations
 

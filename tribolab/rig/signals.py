@@ -20,7 +20,7 @@ _FINE = 20_000  # points per segment at which true means are computed
 
 @dataclass(frozen=True)
 class StrokeFriction:
-    """True friction coefficient along one stroke as a function of distance; resistance is > 0.
+    """True friction coefficient along one stroke, as a function of distance from its start.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def make_signals(
         level = factor * float(law(np.array([speed]))[0])
         length = speed * (duration + ramp)
         form, wavelength, drop = slip.at(speed)
-        # positions in the constant-speed part, from the start of the stroke
+        # distances from the start of the stroke, in its part with constant speed
         fine = 0.5 * speed * ramp + speed * duration * (np.arange(_FINE) + 0.5) / _FINE
         ripple = _ripple(form, length, wavelength, drop * level, level, scatter, fine, rng)
         stroke = StrokeFriction(level, length, ripple, left=left * direction, protocol=protocol)

@@ -123,7 +123,7 @@ class Described:
 
 
 class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]):
-    """Work of `tribolab info`, file by file: how each raw file is read."""
+    """Tasks of `tribolab info`: each raw file is read and described in lines."""
 
     name = "files"
 

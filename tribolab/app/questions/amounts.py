@@ -61,7 +61,7 @@ def confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
 
 
 def candidate_amount(draft: Draft, amount: str) -> tuple[str, Amount | None]:
-    """Return the lines of the file that may state a missing load or speed, and its value."""
+    """Return the lines of the file that may state a missing load or speed, and the likely value."""
     layout, understood = draft.layout, draft.understood
     lack = {"load": "normal_force", "speed": "sliding_velocity"}.get(amount, "")
     if layout is None or understood is None or not lack:

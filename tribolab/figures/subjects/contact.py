@@ -27,7 +27,7 @@ _MAX_POINTS = 200  # largest number of points of a line
 def contact_area(
     contacts: SurfaceOrSeveral, loads: xr.Dataset | None = None, *, surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the relative contact area without adhesion against pressure, and mark Hertz pressures.
+    """Draw relative contact area (without adhesion) against pressure, and mark Hertz pressures.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def hertz_marks(loads: xr.Dataset | None) -> tuple[Mark, ...]:
 
 @plotted()
 def gaps(distributions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw the gap distribution as u P(u) against ln u, where equal areas are equal probabilities.
+    """Draw the gap distribution as u P(u) against ln u: equal areas are equal probabilities.
 
     Parameters
     ----------

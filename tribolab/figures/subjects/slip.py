@@ -128,7 +128,7 @@ def slip_traces(
 
 
 def _round_up(shift: float, gap: float) -> float:
-    """Return a shift rounded up, to the decimals of the leading digit of the gap."""
+    """Return a shift, rounded up to the decimal place of the first digit of the gap."""
     digits = -math.floor(math.log10(gap)) if gap > 0 else 2
     return round(math.ceil(round(shift * 10.0**digits, 6)) / 10.0**digits, max(digits, 0))
 
@@ -145,7 +145,7 @@ def _shift_text(shift: float) -> str:
 
 
 def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """Return distance [m] and friction of a stroke without its trimmed ends; resistance is > 0."""
+    """Return distance [m] and friction (positive as resistance) between the trimmed ends."""
     signal = main_signal(trace.run, trace.friction)
     time = trace.run["time"].values
     row = trace.segments.isel(segment=int(trace.segment))
@@ -159,7 +159,7 @@ def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
 
 @plotted(panels=3)
 def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec:
-    """Draw the cumulative distributions of drop, distance and slip duration of slip events.
+    """Draw cumulative distributions of the drops, distances and slip durations of slip events.
 
     Unlike histograms, they need no choice of bins.
 

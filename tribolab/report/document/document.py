@@ -239,7 +239,7 @@ def verdict(
 
 
 def state_of(verdict: Mapping[str, Any]) -> str:
-    """Return the verdict in one word, with which page and terminal begin: OK, SUSPECT, CHECK, FAIL.
+    """Return the verdict as the first word of page and terminal: OK, SUSPECT, CHECK or FAIL.
 
     Examples
     --------
@@ -271,7 +271,7 @@ def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
 
 
 def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
-    """Return text on the measured range; for two or three instruments, one range for each."""
+    """Return text on the range of the measured values, for up to three instruments separately."""
     apart: dict[str, list[Mapping[str, Any]]] = {}
     for run in runs:
         if run["value_min"] is not None:

@@ -62,7 +62,7 @@ SENSITIVE = {  # columns of the sensitivity to one input, and their meanings
 
 @dataclass(frozen=True, kw_only=True)
 class ModelRow(ModelRows):
-    """Model of one curve, with rows for the tables; `fit` is completed from other models."""
+    """Mixed-lubrication model of one curve, its fit, and its rows in the tables."""
 
     model: ModelOutcome
     fit: Json | None

@@ -49,7 +49,7 @@ class FigureTask:
 
 
 class Figures(Recorded[FigureTask, DrawnFigures, Notice]):
-    """Work on the figure files: a task for each subject."""
+    """Tasks that draw the figure files, one for each subject."""
 
     name = "figures"
     kind = "figure"

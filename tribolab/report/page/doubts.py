@@ -14,8 +14,8 @@ from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
 
 _GRAVE = ("error", "fail", "suspect")
-_MAX_NAMED, _MAX_LISTED = 2, 6  # most runs with a doubt of their own; most runs in a joint doubt
-_REPEATS = "repeats"  # name of the check
+_MAX_NAMED, _MAX_LISTED = 2, 6  # most runs with a separate doubt each; most runs named in one doubt
+_REPEATS = "repeats"  # name of the check that compares repeats
 _COMPARE = "Compare its trace with those of its repeats."
 _COMPARE_ALL = (
     "They are still included in the means. Compare their traces with those of their repeats."

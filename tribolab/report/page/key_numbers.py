@@ -83,7 +83,7 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
 
 
 def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
-    """Return a table of running-in and steady friction of runs at one speed; None without such.
+    """Return a table of running-in and steady friction of all runs at one speed; None if none.
 
     The first rows are the means of repeats, with the U95 of the scatter between them, also without
     those that contradict the others.

@@ -58,7 +58,7 @@ def _gain(part: str, share: float, dof: float, runs: float) -> float:
 
 
 def contribution_figures(curves: Sequence[CurveRecord]) -> list[FigureSpec]:
-    """Return a figure with a bar per contribution: its rms standard uncertainty of all points."""
+    """Return a bar chart of the contributions to the uncertainty, averaged over all points."""
     parts: dict[str, list[Contribution]] = {}
     every = contributions(curves)
     for each in every:

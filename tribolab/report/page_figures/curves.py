@@ -1,4 +1,4 @@
-"""Figures of measured and computed friction against speed, per surface and medium, or load."""
+"""Figures of measured and computed friction against speed, by surface and medium, or by load."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSp
 
 
 def _card_style(series: Series, one_load: bool) -> Series:
-    """Return a series in the style of a card: points without lines; no shade for one load."""
+    """Return a series in the style of a card: points not joined, and no shading of one load."""
     if series.label == _AS_FOUND:
         return replace(series, colour=GREY, shade=0.0, open=True, joined=False)
     if one_load:

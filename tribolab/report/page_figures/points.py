@@ -182,6 +182,6 @@ def describe_point(
         count = sum(point.segments for point in points)
         lines += [many(count, "segment"), f"{samples:.0f} independent samples"]
         names = [point.run for point in points]
-        # one line each, as a long line would be cut
+        # a line for each name, because long lines of a tooltip are cut
         lines += names[:_NAMED] + ([f"and {len(names) - _NAMED} more"] * (len(names) > _NAMED))
     return "\n".join(lines)

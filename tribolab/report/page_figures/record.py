@@ -70,7 +70,7 @@ def page_task(
 
 
 class PageFigures(Recorded[PageTask, PageRecord, Notice]):
-    """Work on the interactive figures of the page: a task for each subject."""
+    """Tasks that make the interactive figures of the page, one for each subject."""
 
     name = "page"
     kind = "live"

@@ -39,7 +39,7 @@ from tribolab.report.slowest import lowest_loads
 
 _APART = 1.2  # a spectrogram needs speeds that differ by more than this factor
 _EXCERPT = 800  # most points of a trace
-# line style of the first and second quantity: (in a liquid, dry)
+# line styles (in a liquid, dry) of the first quantity, and of the second one
 _STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
 
 
