@@ -65,7 +65,7 @@ class Checked:
 
 @dataclass(frozen=True)
 class CheckTask:
-    """Files to check together: a run; repeated scans with testers' results; or such results."""
+    """Files to check together: a run, repeated scans with testers' results, or results alone."""
 
     kind: str
     files: tuple[Path, ...]

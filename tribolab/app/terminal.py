@@ -78,7 +78,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         ("suspect", "suspect"),
     ):
         runs = [run for run in outcome.runs if run.quality == quality]
-        # read only the records that are named
+        # only runs with a full message need their record
         names = _alike((run.name, _reasons_of_run(run, outcome)) for run in runs[:_HANDFUL])
         names += [run.name for run in runs[_HANDFUL:]]
         for surface in outcome.surfaces:

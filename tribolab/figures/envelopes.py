@@ -124,4 +124,4 @@ def _first_at(y: np.ndarray, level: np.ndarray, starts: np.ndarray, ends: np.nda
     """Return for each column the first index at which y equals a level, e.g. its maximum."""
     hits = np.append(np.flatnonzero(y == np.repeat(level, ends - starts)), y.size)
     first = hits[np.searchsorted(hits, starts)]
-    return np.where(first < ends, first, starts)  # NaN equals nothing, so the first index is used
+    return np.where(first < ends, first, starts)  # without a hit, as for NaN, the first index

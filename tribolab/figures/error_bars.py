@@ -15,7 +15,7 @@ COVERAGE = float(special.ndtri(0.975))  # half a normal 95 % interval in standar
 
 
 def error_bar(data: xr.Dataset, name: str, kind: ErrorBars = "U95") -> np.ndarray:
-    """Return the length of the error bar of each point (half its whole length).
+    """Return the half length of the error bar of each point.
 
     Parameters
     ----------

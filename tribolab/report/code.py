@@ -27,7 +27,7 @@ def code_of_page() -> str:
 
 
 def _checksum(kinds: tuple[str, ...]) -> str:
-    """Return a checksum of the package's files with these endings, wherever it is installed."""
+    """Return a checksum of the package's files with given suffixes, wherever it is installed."""
     files = (file for room in _ROOMS for file in (_PACKAGE / room).rglob("*"))
     chosen = sorted((str(f.relative_to(_PACKAGE)), f) for f in files if f.suffix in kinds)
     return sha256_of([__version__, [[name, sha256_of_file(file)] for name, file in chosen]])

@@ -19,7 +19,7 @@ _HEADER = (
     "ECR (%)\tRolling Speed (mm/s)\tSliding Speed (mm/s)\tSRR (%)\tTraction Force (N)\t"
     "Traction Coeff (-)"
 )
-_RANGE = (1e-6, 0.08)  # N/m, viscosity times entrainment speed in the strip theory's range
+_RANGE = (1e-6, 0.08)  # range of viscosity × entrainment speed [N/m] that is computed
 _SECONDS = 10.0  # time between two rows of the file [s]
 
 

@@ -177,7 +177,7 @@ def _law_parameters(thing: object) -> Json:
 
 
 def _clock_facts(errors: Errors, begin: float, end: float) -> dict[str, float]:
-    """Return the drawn errors of a run, and its clock shift in the middle of the motion log."""
+    """Return the random errors of a run (offsets, velocity noise, clocks) as plain data."""
     middle = motion_clock(np.array([begin, end]), errors).mean()
     return {
         "friction_force_offset_N": errors.friction_force_offset,

@@ -263,7 +263,7 @@ def sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _progress(run: SimulatedRun) -> np.ndarray:
-    """Return for each row the share of its segment that has passed (0 to 1); NaN between."""
+    """Return for each row the share (0 to 1) of its segment that has passed; else NaN."""
     time = run.force_log.time.values
     result = np.full(time.size, np.nan)
     for stroke in range(len(run.segments)):

@@ -61,7 +61,7 @@ def describe(
 
 
 def describe_by_questions(files: Sequence[Path], *, keep: bool) -> Path | None:
-    """Ask the user for what the files of an unknown instrument do not state, and describe it.
+    """Ask questions about an unknown instrument in a terminal, and write its description.
 
     Parameters
     ----------

@@ -193,7 +193,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
 
 
 def _is_explained(path: Path, error: ReadError) -> bool:
-    """Whether the error of a scan is the one to show, so that the file is not tried as a run."""
+    """Whether the error of reading a scan is final, so that the file is not tried as a run."""
     # imported late for a quick start
     from tribolab.reading.scans.extent import RefusedScanError
     from tribolab.reading.scans.formats.undescribed import is_own_text

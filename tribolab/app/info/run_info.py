@@ -74,7 +74,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
     names = set(facts["columns"])
     forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
     if not names & forces and names & _OF_MOTION:
-        return []  # a motion log has no force, because the force log has it
+        return []  # a motion log, whose run has its forces in another log
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
     if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
@@ -84,7 +84,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
         if any(is_stroke_frequency(*split_name(label)) for label in facts["not_used"]):
             names.add("frequency")
     turned = any(part_pattern("sine").search(normalise_label(x)) for x in facts["not_used"])
-    rig = {"crank"} if "drive" in facts["metadata"] or turned else set()  # if a crank turns
+    rig = {"crank"} if "drive" in facts["metadata"] or turned else set()  # driven by a crank
     if "friction_force" in columns and reversals(columns["friction_force"]):
         rig.add("reversals")
     lacks = missing_inputs(names, rig)

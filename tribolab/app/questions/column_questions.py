@@ -54,7 +54,7 @@ class Ask(Protocol):
 def ask_for(
     draft: Draft, names: Sequence[str], question: str, ask: Ask, say: Say, amount: str = ""
 ) -> Draft:
-    """Ask which column has one of these quantities (or for its fixed amount), unless known."""
+    """Ask which column has one of several quantities, or for a constant value, unless known."""
     found = column_of_any(draft, names)
     if found is not None and found.quantity in names and not (found.guessed or found.fill_in):
         return draft  # already known

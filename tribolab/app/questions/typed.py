@@ -49,7 +49,7 @@ def amount_typed(typed: str, name: str, si_unit: str) -> str:
         raise ReadError(f"{typed} has no unit: type it with one, such as {typed} {_USUAL[si_unit]}")
     times = _TIMES.match(typed) if si_unit == "N" else None
     text = typed[times.end() :] if times else typed
-    text = _COMMA.sub(r"\1.\2", text)  # as in many files
+    text = _COMMA.sub(r"\1.\2", text)
     if si_unit == "N" and (weight := _WEIGHT.match(text)):
         text = f"{weight[1].strip()} {WEIGHTS[weight[2]]}"
     if times:

@@ -83,7 +83,7 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
 
 
 def _uncertain_means(document: Mapping[str, Any]) -> Iterable[Doubt]:
-    """Yield a doubt about conditions whose repeats scatter too much for a certain mean."""
+    """Yield a doubt that names the conditions whose mean is uncertain, as their repeats scatter."""
     levels = {run["name"]: _level(run) for run in document["runs"]}
     odd = {run["name"] for run in document["runs"] if is_odd(run)}
     wide = [
@@ -184,7 +184,7 @@ def _missing_curves(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 
 def _missing_reason(runs: Sequence[Mapping[str, Any]]) -> str:
-    """Return why the runs of a condition give no curve; "" if not all failed or were rejected."""
+    """Return why the runs of a condition give no curve; "" if some run was read and accepted."""
     failed = [run for run in runs if run["status"] != "done"]
     rejected = [run for run in runs if run["status"] == "done" and is_bad(run)]
     which = {1: "its only run", 2: "both runs"}.get(len(runs), f"all {len(runs)} runs")

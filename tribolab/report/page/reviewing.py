@@ -97,6 +97,6 @@ def decision_texts(text: str) -> tuple[str, list[str]]:
         whole = tomllib.loads(text).get("decision", [])
         if [entry for entries in decided for entry in entries] == whole and not tomllib.loads(head):
             return head, texts
-    except tomllib.TOMLDecodeError:  # header inside a text
+    except tomllib.TOMLDecodeError:  # what looks like a header is inside a string
         pass
     return "", []

@@ -134,7 +134,7 @@ def _card(
     name = system_name(surface, medium, list(all_runs))
     rows = [row for curve in curves for row in curve.points]
     values, every = ([number_of(row, name) for row in rows] for name in (_MU, _SPEED))
-    one_load = bool(surface or medium)  # each run without surface and medium is a system of its own
+    one_load = bool(surface or medium)  # without both, curves are different runs, all shown
     spec = stribeck.spec(measured, models, surfaces=known.surfaces, scale="log")
     spec = _over_entrainment(spec, measured + models)
     return replace(
@@ -172,7 +172,7 @@ def _card_style(series: Series, one_load: bool) -> Series:
 
 
 def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
-    """Return the legend label of a measured curve, with whatever tells it from the others."""
+    """Return the legend label of a measured curve, with its load or runs if there are several."""
     loads = [other.outcome.normal_force for other in curves]
     nameless = not (curve.surface or curve.medium)
     if len(curves) > 1 and nameless:

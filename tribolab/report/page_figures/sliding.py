@@ -171,7 +171,11 @@ def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
     return f"In a liquid{unnamed}, {wet}. Dry, {dry}."
 
 
-_UNITS_OF_WAY = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))  # unit, per µm, from µm
+_UNITS_OF_WAY = (
+    ("m", 1e-6, 1e6),
+    ("mm", 1e-3, 1e4),
+    ("µm", 1.0, 0.0),
+)  # unit, units per µm, least µm
 
 
 def _traces(opened: Sequence[_Opened]) -> FigureSpec:
