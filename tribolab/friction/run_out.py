@@ -145,10 +145,7 @@ def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
 def in_step(blocks: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Return the angle [rad], stretched by up to `MAX_ERROR_OF_SPEED` to maximise the fitted wave.
 
-    Parameters
-    ----------
-    blocks, angle
-        Means of the signal and of the angle over equal time intervals (stretch).
+    Parameters are those of `fitted_waves`.
     """
     # from step to step the total angle changes by a quarter turn
     steps = math.ceil(4 * limits.MAX_ERROR_OF_SPEED.value * turns_of(angle))

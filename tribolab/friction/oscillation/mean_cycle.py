@@ -77,20 +77,7 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
 
 
 def abrupt_rise(record: EvenRecord, events: Events) -> float:
-    """Return the mean rise of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
-
-    Parameters
-    ----------
-    record
-        The record in which the events were found.
-    events
-        At least three, with similar periods.
-
-    Returns
-    -------
-    float
-        The size in the signal's unit; NaN for too few samples or events.
-    """
+    """Return the mean rise of a wave that falls slowly and rises abruptly, as in `abrupt_drop`."""
     turned = record._replace(values=-record.values)
     swing = float(np.min(events.drop)) if events.drop.size else 0.0
     return abrupt_drop(turned, find_events(turned.time, turned.values, 0.6 * swing))
@@ -99,23 +86,9 @@ def abrupt_rise(record: EvenRecord, events: Events) -> float:
 def smooth_drop(record: EvenRecord, events: Events) -> float:
     """Return the mean drop, from peak to valley, of a wave that rises and falls smoothly.
 
-    Parameters
-    ----------
-    record
-        The record in which the events were found.
-    events
-        At least three, with similar periods.
-
-    Returns
-    -------
-    float
-        The size in the signal's unit; NaN for too few samples or events.
-
-    Notes
-    -----
-    Least-squares fit of a straight line, a sine and its second harmonic, whose phase advances by
-    one period from the middle of one fall to the next: nearly the best possible estimate of a sine
-    in noise.
+    Parameters and result are those of `abrupt_drop`, with at least three events. A straight line, a
+    sine and its second harmonic are fitted, whose phase advances by one period from the middle of
+    one fall to the next: nearly the best possible estimate of a sine in noise.
 
     Examples
     --------

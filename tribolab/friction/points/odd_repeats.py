@@ -94,10 +94,6 @@ def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
         Logarithms of the repeated quantity for each condition (repeat): for runs the mean of
         ln(friction) over their common speeds, for scans ln(Rq).
 
-    Returns
-    -------
-    list of OddRepeat
-
     Examples
     --------
     >>> rng = np.random.default_rng(0)

@@ -35,10 +35,6 @@ def speed_groups(
         Number of the sweep that each speed belongs to, -1 for none: speeds of one sweep are never
         combined (observation).
 
-    Returns
-    -------
-    SpeedGroups
-
     Notes
     -----
     Gaps between neighbouring logarithms of speed are small within groups and large between them.

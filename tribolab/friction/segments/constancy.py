@@ -154,21 +154,9 @@ def constant_part(data: MeanVelocities, first: int, last: int, drift: float) -> 
 
 
 def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bool:
-    """Return whether a piece has constant speed.
+    """Return whether a piece has constant speed; False only if the data show a change clearly.
 
-    Parameters
-    ----------
-    data
-        The record.
-    first, last
-        The piece: samples [first, last).
-    drift
-        Relative change that a constant speed may show.
-
-    Returns
-    -------
-    bool
-        False only if the data show it clearly: see the notes of this module.
+    Parameters are those of `constant_part`; the notes of this module state the criteria.
     """
     count = min(_BINS_OF_PIECE, last - first)
     if count < limits.MIN_BINS_OF_CURVATURE.value:
