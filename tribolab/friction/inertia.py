@@ -1,4 +1,4 @@
-"""Moving mass between contact and sensor, from the force against the acceleration."""
+"""Moving mass between contact and sensor, from the dependence of force on acceleration."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ def _is_steady(acceleration: np.ndarray) -> bool:
 
 
 def _fits(pair: np.ndarray, terms: list[np.ndarray], force: np.ndarray) -> np.ndarray:
-    """Return least-squares coefficients of the terms in the force, for each pair (pair, term)."""
+    """Fit the terms to the force of each pair of strokes; return the coefficients (pair, term)."""
     count = int(pair.max()) + 1
     size = np.bincount(pair, minlength=count)
     normal = np.array(

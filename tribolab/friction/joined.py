@@ -47,7 +47,7 @@ def grouped(
 
 
 def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> xr.Dataset:
-    """Put measured curves on common axes.
+    """Return several measured curves as one dataset with common axes.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Limits for averaging a record."""
+"""Limits for averaging records, moving mass, run-out and traction curves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Waves that repeat with each turn of a rig, and their effect on the mean of an unfinished turn.
+"""Waves that repeat with each turn of a rig, and their effect on means over incomplete turns.
 
 Notes
 -----
@@ -32,11 +32,12 @@ import numpy as np
 
 from tribolab.friction import limits
 
-MAX_COARSE_TURNS = 64.0  # turns in a record: for more, finer intervals of time are used
-_TURNS_OF_SECOND_ORDER = 2.0  # turns above which a wave twice per turn is also fitted
+MAX_COARSE_TURNS = 64.0  # most turns in a record for which the usual intervals are fine enough
+_TURNS_OF_SECOND_ORDER = 2.0  # fewest turns for which a wave with two periods per turn is fitted
 _MIN_TURNS = 0.25  # a smaller part of a turn is treated like this one
-_STRETCHES_PER_TURN, _MIN_STRETCHES_PER_TURN = 8, 4  # intervals per turn for many turns
-# most intervals: for more turns, at least 16 are averaged in each coarse one
+# usual and smallest number of intervals per turn, for many turns
+_STRETCHES_PER_TURN, _MIN_STRETCHES_PER_TURN = 8, 4
+# most such intervals; 16 of them are then averaged in each usual interval
 _MAX_STRETCHES = 6144
 
 
@@ -53,7 +54,7 @@ class Wave(NamedTuple):
         return float(self.amplitude * abs(np.sinc(self.turns)) / np.sqrt(2))
 
     def exceeds_spectrum(self, power: np.ndarray) -> bool:
-        """Return whether the wave is far above the residual spectrum, from 0 to Nyquist."""
+        """Return whether the wave is far above the spectrum `power` of the residuals."""
         count = self.signal.size
         cycles = np.linspace(0, count / 2, power.size)
         neighbours = power[(cycles >= self.turns / 2) & (cycles <= 2 * self.turns)]
@@ -100,7 +101,7 @@ def hidden_by_part(turns: float) -> float:
 
 
 def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
-    """Fit a mean and waves of once (and twice) per turn to a record, and return the waves.
+    """Return the waves with one (and two) periods per turn that fit a record best.
 
     Parameters
     ----------
@@ -121,7 +122,7 @@ def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
 
 
 def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
-    """Return the number of intervals that resolves many turns, a multiple of the coarse ones.
+    """Return how many intervals resolve the waves of many turns: a multiple of the coarse ones.
 
     Parameters
     ----------

@@ -207,7 +207,7 @@ def _as_sliding(friction: xr.Dataset, over: str) -> xr.Dataset:
 def _join_curves(
     frictions: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
 ) -> xr.Dataset:
-    """Return the curves of all combinations of labels, joined."""
+    """Return the curves of all combinations of labels as one dataset."""
     groups = grouped(frictions, labels, "measured_stribeck_curve")
     curves = joined_curves(
         [(measured_stribeck_curve(group, speed_tolerance), key) for group, key in groups]

@@ -21,7 +21,7 @@ other and with the repeatability under all other conditions. This page is genera
 
 
 def catalogue() -> str:
-    """Return the text of the page: each check's question, remedy, and limits with reasons.
+    """Return the page CHECKS.md: each check's question, remedy, and limits with reasons.
 
     Examples
     --------

@@ -20,7 +20,7 @@ _FAIL_ON = ("suspect", "fail", "never")
 
 
 class FindingRow(TypedDict):
-    """Result of one check as a row, with limits in SI; `value` is None if there is no number.
+    """Result of one check as a dictionary, with limits in SI; `value` is None without a number.
 
     `decision` is present if a person settled an objection.
     """

@@ -1,4 +1,4 @@
-"""Quality flags as CF flag variables: QARTOD severities, and the bits of the checks.
+"""Quality flags as CF variables: severities as in QARTOD, and one bit for each check.
 
 Every variable ``X`` may carry ``X_qc`` (one severity per sample) and ``X_qc_tests`` (a bit per
 check that objected). The convention is defined here:
@@ -77,7 +77,7 @@ def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
 
 
 def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
-    """Return a read-only array of one severity for all samples, which needs the memory of one.
+    """Return a read-only array with one severity for all samples, in the memory of one number.
 
     Examples
     --------

@@ -192,7 +192,7 @@ def sample_result(
     value
         The number [1] that the check measured, if it is more informative than the share.
     """
-    # uniform arrays are not searched sample by sample
+    # arrays made by `uniform` need not be searched
     sound = is_uniform(flags) and not _objects(flags[:1]).any()
     bad = np.zeros(0, int) if sound else samples_where(_objects, flags)
     if bad.size == 0:

@@ -17,11 +17,11 @@ from tribolab.arrays.scratch import filled
 from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 
-_BLOCK = 64  # samples of a block with one noise level; steps of a run can be as short
+_BLOCK = 64  # samples in a block that has one noise level; a step of a run may be as short
 _NOISE_RATIO = 1.6  # ratio of noise levels of neighbouring blocks that is not due to chance
 
 _SAMPLES_PER_READING = 3  # samples per reading from which a channel counts as refreshed slowly
-_MAX_EXAMINED = 1 << 24  # samples; longer records are not examined for slow refreshing
+_MAX_EXAMINED = 1 << 24  # records with more samples are not examined for slow refreshing
 
 
 def missing(values: np.ndarray) -> np.ndarray:
@@ -77,7 +77,7 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 
 
 def _height(step: np.ndarray) -> np.ndarray:
-    """Return how far each sample, except two at both ends, deviates from its neighbours."""
+    """Return how far each sample, except the two at each end, deviates from its neighbours."""
     bend = np.diff(step)
     # deviation from the previous sample, and the line through two of them; the same for the next
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
@@ -118,7 +118,7 @@ class _EqualRuns(NamedTuple):
 
 
 def _runs_of_equal(values: np.ndarray, long: int) -> _EqualRuns:
-    """Return the counts of sequences of identical values by length, and the long sequences."""
+    """Return lengths and counts of the sequences of identical values, and the long sequences."""
     often: Counter[int] = Counter()
     listed = [np.zeros((0, 2), int)]
     begun = 0  # start of the sequence that continues in the next piece
@@ -141,7 +141,7 @@ def _runs_of_equal(values: np.ndarray, long: int) -> _EqualRuns:
 
 
 def _quantile(values: np.ndarray, counts: np.ndarray, share: float) -> float:
-    """Return a quantile of increasing values that occur several times, as `numpy.quantile` does."""
+    """Return a quantile of increasing values with given counts, as `numpy.quantile` would."""
     behind = np.cumsum(counts)
     place = share * (int(behind[-1]) - 1)
     below, above = (

@@ -19,7 +19,7 @@ _MAX_SLOPE_RATIO = 0.4  # ratio of rms slopes along and across the lay; smooth m
 
 
 def self_affinity_objection(scans: xr.Dataset) -> str:
-    """Return why the spectrum of these scans must not be extrapolated as self-affine; "" if it may.
+    """Return why a spectrum must not be extrapolated as self-affine; "" if there is no reason.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
 
 
 def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:
-    """Return the rms slope along the lay over that across it (..., y, x); 1 without a lay."""
+    """Return the ratio of rms slopes along and across the lay of a map; 1 without a lay."""
     height = height.reshape(-1, *height.shape[-2:])
     sums = np.zeros(3)
     starts = range(0, height.shape[1] - 1, _BLOCK)

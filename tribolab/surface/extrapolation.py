@@ -21,7 +21,7 @@ _ABOVE_ROLLOFF = 1.5  # start of the fitted range, relative to the roll-off
 
 
 class PowerLaw(NamedTuple):
-    """Power law of a spectrum: a straight line ``ln C = level + slope (ln q - centre)``."""
+    """Power law of a spectrum, a straight line in logarithms: ``level + slope (ln q - centre)``."""
 
     level: float
     slope: float
@@ -73,7 +73,7 @@ def extrapolate(
     q_high: str | float = np.pi / 1e-9,
     fit_decade: tuple[str | float, str | float] | None = None,
 ) -> xr.Dataset:
-    """Return a 2D spectrum extended by a constant at small and a power law at large wavenumbers.
+    """Extend a 2D spectrum by a constant to small and by a power law to large wavenumbers.
 
     Parameters
     ----------

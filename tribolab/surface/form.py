@@ -23,7 +23,7 @@ _CHUNK = 1 << 20  # heights processed at a time
 
 
 def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
-    """Return scans with dropouts (NaN) filled by interpolation, and the number of dropouts.
+    """Return scans with dropouts (NaN) filled by interpolation and marked.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def _extended_history(scans: xr.Dataset, action: str) -> str:
 
 
 def _remove_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Set the residual of a perfect form to zero: rounding errors are not roughness."""
+    """Return heights, set to zero where only rounding errors remain after form removal."""
     level = rounding_only(left, rows)[:, None]
     return np.where(level & np.isfinite(left), 0.0, left) if level.any() else left
 

@@ -25,7 +25,7 @@ _MAX_FACTOR = float(np.log(2.0))  # change of ln(power) above which gaps dominat
 
 
 class GapEffect(NamedTuple):
-    """Effect of gaps on a result: its mean shift, and its standard error after correction.
+    """Effect of gaps on a result: mean shift of the result, and standard error once corrected.
 
     The result minus the shift is the result of the complete scan, within 1.96 errors in 95 % of
     cases. A large share of the shift from bridges hides the surface.
@@ -193,7 +193,7 @@ def gap_effect(
         laid = missing[rng.permutation(len(missing))] if joint else missing
         gaps, row = _move_gaps(laid, rng, (-2, -1) if is_map else (-1,))
         change = measure(bridge_gaps(height, gaps, is_map=is_map)) - whole
-        if own is not None and is_map:  # assign each change to the row that its gaps come from
+        if own is not None and is_map:  # each change belongs to the row from which its gaps come
             back = np.broadcast_to(np.argsort(row, axis=-1), change.shape)
             change = np.take_along_axis(change, back, axis=-1)
         changes.append(change)
@@ -274,7 +274,7 @@ def _move_gaps(
 
 
 def _shift(gaps: np.ndarray, rng: np.random.Generator, axis: int) -> int:
-    """Return a random shift of the gaps that splits no gap of a profile at its ends."""
+    """Return a random cyclic shift of gaps that does not split a gap at the ends of a profile."""
     if gaps.ndim > 1:
         return int(rng.integers(gaps.shape[axis]))
     starts = np.flatnonzero(~(gaps & np.roll(gaps, 1)))

@@ -70,7 +70,7 @@ def level_rows(height: np.ndarray) -> np.ndarray:
 
 def level_map(height: np.ndarray) -> bool:
     """Return whether all heights (y, x) of a map lie on one plane."""
-    first = slice(0, 8)  # most maps are rough, which their first rows already show
+    first = slice(0, 8)  # the first rows already show that most maps are rough
     return bool(
         level_rows(height[first]).all() and level_rows(height).all() and level_rows(height.T).all()
     )

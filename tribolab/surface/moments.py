@@ -15,7 +15,7 @@ from tribolab.core.errors import AnalysisError
 
 
 def spectrum_arrays(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return the wavenumbers [rad/m] and values C [m4] of a power spectrum, after checking them.
+    """Return wavenumbers [rad/m] and C [m4] of a power spectrum, or raise if it is invalid.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def rms_slope(psd: xr.Dataset) -> float:
 def refine_nodes(
     q: np.ndarray, spectrum: np.ndarray, per_decade: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the spectrum with nodes added until there are `per_decade` of them per decade.
+    """Return a spectrum with nodes added, so that there are `per_decade` in each decade.
 
     The moments do not change; quantities computed at the nodes (a gap, a modulus) gain resolution.
     Bins next to a zero, where C is linear in q, are not divided.
@@ -189,7 +189,7 @@ def refine_nodes(
 
 
 def spectrum_at(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
-    """Return C at any wavenumber of a spectrum, by power laws, or linearly next to a zero."""
+    """Return C at given wavenumbers, interpolated by power laws, or linearly next to a zero."""
     wavenumber = np.asarray(wavenumber, dtype=float)
     if (spectrum > 0).all():
         return np.exp(np.interp(np.log(wavenumber), np.log(q), np.log(spectrum)))

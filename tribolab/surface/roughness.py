@@ -144,7 +144,7 @@ def primary_roughness(scans: xr.Dataset) -> xr.DataArray:
 
 
 class _Evaluation(NamedTuple):
-    """Settings of a roughness evaluation: pitch and cut-offs [m], filtering already done."""
+    """Settings of a roughness evaluation: pitch, cut-offs [m], and filters already applied."""
 
     pitch: float
     cut: float | None
@@ -228,7 +228,7 @@ def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 def _correct_gaps(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
-    """Return parameters corrected for gaps, with the remaining error (``Ra_gap_error``)."""
+    """Return parameters corrected for gaps, and their remaining errors (``Ra_gap_error``)."""
     shape = scans.height.shape
     is_map = "y" in scans.height.dims
     grid = shape[-2:] if is_map else shape[-1:]

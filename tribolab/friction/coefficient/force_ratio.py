@@ -145,7 +145,7 @@ class _RatioRemarks(NamedTuple):
     left: int = 0
 
     def remark(self, estimate: Estimate) -> str:
-        """Return the remarks as text, with those of the mean."""
+        """Return the remarks on the friction coefficient and its error as text."""
         if self.missing or estimate.samples == 0:
             return self.missing or "friction force is not a number"
         remarks = [f"{self.left} samples without contact left out"] if self.left else []

@@ -74,7 +74,7 @@ class Turning(NamedTuple):
         return cls(run["time"].values, run["rotation_speed"].values)
 
     def angle(self, part: slice, at: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
-        """Return the angle [rad] of a segment's samples, or at given times; () if unknown."""
+        """Return the rig's angle [rad] at a segment's samples or at given times; () if unknown."""
         if self.time is None or self.speed is None or part.stop - part.start < 2:
             return ()
         time = self.time[part]

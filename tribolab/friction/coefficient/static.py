@@ -176,7 +176,7 @@ def _starts(
         before = np.flatnonzero(end <= start[i] + 1e-9)
         earliest = stop[i - 1] if i else time[0]
         if not before.size or end[before[-1]] < earliest:
-            continue  # already moving
+            continue  # it moved before: this is no start
         rest = before[-1]
         limit, latest = trimmed[i], start[i] + limits.MAX_TIME_OF_RISE.value * (stop[i] - start[i])
         if reach is not None and speed[i] > 0:

@@ -1,4 +1,4 @@
-"""New bounds of a segment, with its mean values and the omitted intervals updated."""
+"""Change of the start or end of a segment; its values and the omitted intervals follow."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MIN_SAMPLES = 2  # samples needed for a mean and its scatter
 def set_bounds(
     segments: xr.Dataset, place: int, decision: Decision, run: xr.Dataset | None
 ) -> xr.Dataset:
-    """Return the segments of a run with new bounds of one of them.
+    """Return the segments of a run, one of them with another start or end.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def _update_omitted(
 
 
 def _outside(piece: tuple[float, float], taken: tuple[float, float]) -> list[tuple[float, float]]:
-    """Return the parts of a time interval before and after another.
+    """Return those parts of a time interval that are before and after another interval.
 
     Examples
     --------

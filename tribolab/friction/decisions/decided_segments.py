@@ -16,7 +16,7 @@ from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.units.stamping import stamp
 
-DECISIONS = "decisions"  # attribute: decisions as plain data, with the segments they concern
+DECISIONS = "decisions"  # name of the attribute with all decisions and the segments they concern
 # a decision concerns the segment that contains more than this share of its interval
 _MORE_THAN = 0.5
 _SHOWN = 3  # nearest segments listed in the message if a decision finds none
@@ -131,7 +131,7 @@ def _affected_segments(segments: xr.Dataset, decision: Decision) -> list[int]:
 
 
 def _find_segment(segments: xr.Dataset, decision: Decision, low: float, high: float) -> int:
-    """Return the index of the segment with more than half of an interval."""
+    """Return the index of the segment that contains more than half of a decision's interval."""
     start, stop = segments["start"].values, segments["stop"].values
     common = np.minimum(stop, high) - np.maximum(start, low)
     if common.size and common.max() > _MORE_THAN * (high - low):

@@ -17,7 +17,7 @@ _TIMES = ("start", "stop", "new_start", "new_stop")
 
 @dataclass(frozen=True)
 class Decision:
-    """Decision of a person on a run, or on the segment in an interval of its time.
+    """Decision of a person on a run, or on one of its segments, which a time interval identifies.
 
     Parameters
     ----------

@@ -67,6 +67,6 @@ def compute_both(segments: xr.Dataset, compute: Callable[[xr.Dataset], xr.Datase
             values[~out] = variable.values
             result[name] = "segment", values, variable.attrs
         result = result.assign_attrs(own.attrs)
-    if "pair" in result:  # the pairs are those of the accepted segments
+    if "pair" in result:  # rejected segments are in no pair
         result["pair"] = result["pair"].copy(data=np.where(out, -1, result["pair"].values))
     return result

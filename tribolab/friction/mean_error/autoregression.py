@@ -1,4 +1,4 @@
-"""Autoregressive models of records by Burg's method, all records of one length at once."""
+"""Autoregressive models by Burg's method, for many records of equal length at once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _MIN_VARIANCE = 1e-300
 
 
 class Models(NamedTuple):
-    """Coefficients (record, order + 1) beginning with 1, variance of the innovations, order."""
+    """Model of each record: coefficients (from 1 on), variance of its innovations, and order."""
 
     coefficients: np.ndarray
     variance: np.ndarray
@@ -64,7 +64,7 @@ def _criterion(variances: np.ndarray, samples: int) -> np.ndarray:
 
 
 def spectra_of(records: np.ndarray, frequencies: np.ndarray, highest: int = 20) -> np.ndarray:
-    """Return model spectra of records, of the order selected by Akaike's criterion.
+    """Return spectra of records, from models whose order Akaike's criterion selects.
 
     Parameters
     ----------
@@ -108,12 +108,12 @@ class Sieve(NamedTuple):
     effective_samples: np.ndarray
 
     def power(self, frequencies: np.ndarray, samples: int) -> np.ndarray:
-        """Return spectra (record, frequency [cycles per record])."""
+        """Return model spectra at frequencies in cycles per record (record, frequency)."""
         return _power(self.models.coefficients, self.models.variance, frequencies, samples)
 
 
 def sieve_of(records: np.ndarray, fitted: int, highest: int = 8) -> Sieve:
-    """Model the residuals of a fit, corrected for the correlation that the fit removed (Kendall).
+    """Return models of the residuals of a fit, with the correlation that the fit removed.
 
     Parameters
     ----------

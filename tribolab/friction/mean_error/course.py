@@ -17,7 +17,7 @@ _COURSE_TIMES = np.concatenate([[LINE], np.geomspace(0.02, 1.0, 12)])  # as shar
 
 
 def shape_of(time: float, count: int) -> np.ndarray:
-    """Return a trend over a record, its mean removed: a line, or an exponential (sample).
+    """Return a line or an exponential over a record, minus its mean (sample).
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def _shapes(count: int) -> np.ndarray:
 
 
 class LineFit(NamedTuple):
-    """A line through each record: change from start to end, and its p value."""
+    """Straight line through each record: change from start to end, and its p value (record)."""
 
     change: np.ndarray
     chance: np.ndarray
@@ -79,7 +79,7 @@ def _error_of_size(
 
 
 def courses_of(records: np.ndarray) -> list[list[float]]:
-    """Return the trends of each record, as `LINE` or time constants of exponentials, at most two.
+    """Return at most two trends per record: `LINE`, or the time constant of an exponential.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def courses_of(records: np.ndarray) -> list[list[float]]:
     shapes = _shapes(count)
     rest = records - records.mean(axis=1, keepdims=True)
     looked = np.arange(number)
-    # candidate trends of each record, orthogonal to those fitted before
+    # candidate trends of each record, made orthogonal to those fitted before
     left = np.broadcast_to(shapes, (number, *shapes.shape))
     dearer = np.where(_COURSE_TIMES == LINE, 1.0, limits.EXPONENTIAL_OVER_LINE.value)
     for fitted in range(int(limits.MAX_COURSES.value)):

@@ -9,7 +9,7 @@ from scipy import special
 
 from tribolab.core.coverage import NORMAL
 
-# grid of degrees of freedom to invert u95/sem
+# degrees of freedom among which that of a given u95/sem is found
 _DOF = np.geomspace(1.0, 1e4, 8000)
 
 
@@ -24,7 +24,7 @@ class StandardError(NamedTuple):
 
 
 def with_freedom(sem: np.ndarray, u95: np.ndarray) -> StandardError:
-    """Return the standard error and degrees of freedom that give an expanded uncertainty.
+    """Return the standard error and degrees of freedom that together give a known U95.
 
     Parameters
     ----------

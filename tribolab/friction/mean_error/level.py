@@ -1,4 +1,4 @@
-"""Level of a record with its error: oscillations and trends first, then slow drift.
+"""Mean level of a record without oscillations, and its error by trends and slow drift.
 
 Notes
 -----
@@ -26,7 +26,7 @@ from tribolab.friction.mean_error.wander import errors_of_means
 class Levels(NamedTuple):
     """Levels of records with errors (record), in the unit of the records."""
 
-    level: np.ndarray  # without oscillations
+    level: np.ndarray  # mean without oscillations
     sem: np.ndarray
     u95: np.ndarray
     sem_beyond: np.ndarray
@@ -89,7 +89,7 @@ def levels_of(records: np.ndarray) -> Levels:
 
 
 def without_lines(records: np.ndarray, lines: list[list[float]]) -> np.ndarray:
-    """Return records without oscillations of given numbers of cycles (record, sample)."""
+    """Return records minus fitted oscillations, given as cycles per record (record, sample)."""
     calm = records.copy()
     samples = records.shape[1]
     for k, cycles in enumerate(lines):

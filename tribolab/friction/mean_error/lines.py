@@ -10,11 +10,11 @@ import numpy as np
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 
-_FREQUENCY_STEP = 0.125  # cycles between trial frequencies
-_MAX_FREQUENCY = 0.47  # cycles per sample
+_FREQUENCY_STEP = 0.125  # step of the trial frequencies, in cycles per record
+_MAX_FREQUENCY = 0.47  # highest trial frequency, in cycles per sample
 _GOLDEN = 0.382
-_GOLDEN_ROUNDS = 18  # golden-section steps: a frequency to 1e-4 of a grid step
-_GAIN_OFF_GRID = 1.02  # largest gain in power of the best frequency over the best of the grid
+_GOLDEN_ROUNDS = 18  # golden-section steps, which find a frequency to 1e-4 of a grid step
+_GAIN_OFF_GRID = 1.02  # most by which the best frequency exceeds the best grid frequency in power
 
 
 class _Grid(NamedTuple):
@@ -41,13 +41,13 @@ def _grid(count: int) -> _Grid:
 
 
 def waves_of(cycles: float, count: int) -> np.ndarray:
-    """Return cosine and sine of a number of cycles in a record, as columns (sample, 2)."""
+    """Return a cosine and a sine with given cycles per record, as columns (sample, 2)."""
     angle = 2 * np.pi * cycles * (np.arange(count) + 0.5) / count
     return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
 def lines_of(records: np.ndarray) -> list[list[float]]:
-    """Return the oscillations of each record, in cycles per record, at most three.
+    """Return the frequencies of at most three oscillations of each record [cycles per record].
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def _may_have_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
 def _fit_next_line(
     record: np.ndarray, rest: np.ndarray, known: list[float], grid: _Grid
 ) -> np.ndarray | None:
-    """Fit one more oscillation to a record; return the residuals, or None if not significant."""
+    """Fit one more oscillation to a record; return the residuals, None if it is insignificant."""
     count = record.size
     place, _ = _strongest(rest[None], grid)
     base = np.column_stack([grid.line.T, *(waves_of(cycles, count) for cycles in known)])

@@ -29,10 +29,10 @@ from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 
 _MEMORY_GRID = np.geomspace(0.05, 6.0, 8)  # correlation times, as shares of the record
-# variance of the white noise over that of the drift at low frequencies
+# trial ratios of the white noise to the drift in variance, at low frequencies
 _WHITE_SHARES = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 _MIN_COSINES = 4
-_MAX_STEPS = 60  # of Newton's method for U95; about six are needed
+_MAX_STEPS = 60  # most steps of Newton's method for U95; about six are needed
 _CONVERGED = 1e-11  # relative step at which U95 is found
 _WIDEST_BRACKET = np.log(1e12)
 _OUTSIDE_COVERAGE = 0.05
@@ -136,7 +136,7 @@ def _kept_cosines(
 
 
 def _half_interval(weight: np.ndarray, errors: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Return the half interval that contains 95 % of each mixture (record).
+    """Return the half width of the interval with 95 % of each mixture of t distributions (record).
 
     Newton's method for the logarithm of the probability beyond it, as a function of the logarithm
     of the half interval; a step that leaves the bracket is replaced by a bisection.

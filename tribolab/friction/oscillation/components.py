@@ -18,7 +18,7 @@ _WINDOW_BINS = 0.8  # width of a line due to the window, in bins
 
 
 class Component(NamedTuple):
-    """Oscillation: frequency [Hz], error [Hz], swing (signal's unit), p value."""
+    """One oscillation: frequency and its error [Hz], swing (in the signal's unit), p value."""
 
     frequency: float
     frequency_error: float
@@ -85,7 +85,7 @@ def _line(seen: Survey, at: int) -> np.ndarray:
 
 
 def _dominate_surroundings(seen: Survey, core: np.ndarray, lines: list[Component]) -> bool:
-    """Return whether narrow lines contain most of the power around them."""
+    """Return whether lines are narrow: they contain most of the power near them."""
     if len(lines) < 2:
         return True
     f = seen.fine.frequency
@@ -97,7 +97,7 @@ def _dominate_surroundings(seen: Survey, core: np.ndarray, lines: list[Component
 
 
 def _spread(seen: Survey, level: np.ndarray, frequency: float) -> float:
-    """Return the standard deviation of a line's power over frequency [Hz]."""
+    """Return the width of a spectral line [Hz]: standard deviation of its power in frequency."""
     f = seen.fine.frequency
     near = np.abs(f / frequency - 1) < 0.15
     weight = np.maximum(seen.fine.power - level, 0)[near]
@@ -121,7 +121,7 @@ def _harmonics(
         part = np.abs(f - k * frequency) <= reach
         if excess[part].sum() <= limits.MAX_POWER_OF_HARMONIC.value * own / k**2:
             covered |= part
-        if reach >= 0.5 * frequency or k > _MAX_HARMONIC:  # the harmonics overlap
+        if reach >= 0.5 * frequency or k > _MAX_HARMONIC:  # from here on the harmonics overlap
             beyond = f > (k - 0.5) * frequency
             if excess[beyond].sum() <= limits.MAX_POWER_OF_HARMONIC.value * own * (1 / (k - 0.5)):
                 return covered | beyond

@@ -6,8 +6,8 @@ import numpy as np
 
 from tribolab.friction.oscillation import limits
 
-STIFFNESS = "stiffness_N_m"  # attribute of a run: stiffness of the rig in the direction of sliding
-# creep share and k/k_c of settled cycles of the ageing law (slider of test_critical_stiffness),
+STIFFNESS = "stiffness_N_m"  # run attribute with the rig's stiffness in the sliding direction
+# creep share and k/k_c of simulated cycles (ageing law, slider of test_critical_stiffness),
 # measured as in `stick_slip`: near k_c the rise is less steep than the rig's stiffness
 _SMALL_EVOLUTION = (  # b = 1.5 a
     [0.0, 0.0469, 0.1005, 0.1442, 0.1845, 0.2298, 0.2675, 0.376],

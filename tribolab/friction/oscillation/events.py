@@ -1,4 +1,4 @@
-"""Stick and slip events of a record: turning points beyond a hysteresis."""
+"""Stick and slip events of a record, found from its turning points."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Events(NamedTuple):
 
 
 def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
-    """Replace each single outlying sample by the mean of its neighbours.
+    """Return a signal with each single outlying sample replaced by the mean of its neighbours.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def turning_points(values: np.ndarray, hysteresis: float) -> np.ndarray:
 
 
 def find_events(time: np.ndarray, values: np.ndarray, hysteresis: float) -> Events:
-    """Find the cycles of stick and slip in a record.
+    """Return the cycles of stick and slip in a record.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def find_events(time: np.ndarray, values: np.ndarray, hysteresis: float) -> Even
     turns = turning_points(values, hysteresis)
     if turns.size < 4:
         return Events(*[np.zeros(0)] * len(Events._fields))
-    # the record is cut at the first and the last turn
+    # the record begins and ends in the middle of a swing: drop the first and the last turn
     turns = turns[1:-1]
     if values[turns[0]] > values[turns[1]]:
         turns = turns[1:]

@@ -110,7 +110,7 @@ def examine_record(time: np.ndarray, values: np.ndarray, *, force: bool = False)
 
 
 def _best_view(record: EvenRecord, surveyed: Survey, noise: float) -> View:
-    """Return the view at the period of the strongest line, or at another one that is more regular.
+    """Return oscillation and cycles at the period of the strongest line, or at a more regular one.
 
     In a record of few sawtooth periods the second harmonic may be the strongest significant line:
     then the drops repeat at another period, and the spectrum is examined there. Slow drift or noise
@@ -140,7 +140,7 @@ def _best_view(record: EvenRecord, surveyed: Survey, noise: float) -> View:
 def _without_slow_wave(
     record: EvenRecord, surveyed: Survey, view: View, noise: float
 ) -> tuple[EvenRecord, Survey, View]:
-    """Remove a slow wave if a larger regular oscillation remains."""
+    """Return a record without a slow wave, if a larger regular oscillation remains."""
     rest = without_slow_wave(record)
     found = survey(rest[0]) if rest else None
     if rest is None or found is None:
@@ -157,7 +157,7 @@ def _without_slow_wave(
 
 
 def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
-    """Remove drift far slower than the oscillation, which makes drops differ from rises."""
+    """Return a record without drift slower than its oscillation, which makes drops unlike rises."""
     periods = frequency * record.values.size * record.spacing
     degree = int(
         np.clip(
@@ -165,7 +165,7 @@ def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
         )
     )
     series = np.polynomial.legendre
-    if record.even:  # nearly orthogonal: the normal equations are well conditioned
+    if record.even:  # the basis is nearly orthogonal: normal equations are accurate
         terms = series.legvander(np.linspace(-1, 1, record.values.size), degree)
         drift = terms @ np.linalg.solve(terms.T @ terms, terms.T @ record.values)
     else:
@@ -196,7 +196,7 @@ def _without_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord 
 def _view(
     record: EvenRecord, oscillation: Oscillation, noise: float, fewest: int = _SAMPLES_PER_PERIOD
 ) -> View:
-    """Find the cycles of an oscillation at the scale of its period."""
+    """Return an oscillation with its cycles, found in a record averaged to suit its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))
     # average only as much as the noise requires, because means round off abrupt falls
     wanted = min(limits.SWING_OVER_NOISE.value * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
@@ -218,7 +218,7 @@ def _view(
             hysteresis = typical
             events = find_events(part.time, part.values, hysteresis)
     fall, whole = events.stop - events.peak, events.stop - events.start
-    # periods are counted between sharp edges
+    # periods are counted between the sharp edges, which are the rises of a reversed sawtooth
     if events.drop.size and median(fall / whole) > limits.MIN_FALL_OF_REVERSED_WAVE.value:
         turned = part._replace(values=-part.values)
         seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
@@ -230,18 +230,18 @@ def _view(
 def _excess(
     record: EvenRecord, view: View, form: WaveformFeatures, probability: np.ndarray
 ) -> float:
-    """Return the bias of the mean drop from valley to peak."""
+    """Return the bias of the mean drop when it is measured from peak to valley."""
     if probability[0] >= 0.5:
         return 0.0
     oscillation, events = view.oscillation, view.events
     mean = float(np.mean(events.drop))
-    # the cycles are alike and without a pause
+    # the mean cycle is used if all cycles are alike, without a pause
     if (
         form.period_scatter < limits.MAX_SCATTER_OF_SURE_PERIODS.value
         and view.regularity.periods.size == events.drop.size - 1
     ):
         means = {1: abrupt_drop, 2: smooth_drop, 3: abrupt_rise}.get(int(np.argmax(probability)))
-        # means round off abrupt falls
+        # less averaging, because means round off abrupt falls
         finer = max(1, round(view.record.spacing / record.spacing) // 2)
         last = int(view.record.values.size * round(view.record.spacing / record.spacing))
         part = EvenRecord(record.time[:last], record.values[:last], *record[2:])

@@ -11,7 +11,7 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, block_means
 
 _GRID_POINTS = 192  # number of block means to which the record is reduced
-_TRIED_CYCLES = np.arange(2.0, 5.21, 0.1)  # trial numbers of waves in the record
+_TRIED_CYCLES = np.arange(2.0, 5.21, 0.1)  # trial numbers of periods in the record
 _WAVE_HARMONICS = 2
 _DRIFT_DEGREE = 4  # degree of the polynomial, for drifts of any kind, that must fit worse
 _MIN_SAMPLES = 32
@@ -39,7 +39,7 @@ def _bases() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def slow_wave(record: EvenRecord) -> SlowWave | None:
-    """Find one slow wave that explains nearly all of the fluctuation; else None.
+    """Return the slow wave that explains nearly all of the fluctuation; None without one.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
     drift = values - polynomial @ (polynomial.T @ values)
     parts = np.einsum("kpt,p->kt", waves, rest)
     explained = (parts**2).sum(axis=1) / total
-    # a wave mostly of the second harmonic does not count as one of this frequency
+    # a fit mostly by the second harmonic is no wave of this frequency
     own = (parts[:, 2:4] ** 2).sum(axis=1)
     explained = np.where(own > 0.5 * (parts**2).sum(axis=1), explained, 0.0)
     left = 1 - float(explained.max())

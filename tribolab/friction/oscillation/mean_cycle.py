@@ -1,4 +1,4 @@
-"""Drop of the mean cycle, in which noise averages out."""
+"""Mean drop of friction in stick-slip, from the average of cycles, which reduces noise."""
 
 from __future__ import annotations
 
@@ -52,7 +52,8 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
     period = float(np.diff(events.middle).mean())
     spacing = record.spacing / period
     count = int(_WINDOW_OF_FALL / spacing)
-    place = spacing * (np.arange(-count, count) + 0.5)  # middles are between two samples
+    # the middle of a fall is between two samples
+    place = spacing * (np.arange(-count, count) + 0.5)
     reach = count * record.spacing
     whole = (events.middle - reach >= record.time[0]) & (events.middle + reach <= record.time[-1])
     if count < 2 or not whole.any():

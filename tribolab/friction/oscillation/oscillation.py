@@ -88,7 +88,7 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
     strong = np.where(
         seen.significant & (seen.cycles >= limits.MIN_CYCLES_IN_RECORD.value), seen.excess, 0.0
     )
-    # without a significant band: the maximum of smoothed frequency times power, above slow drift
+    # without a significant band, take the maximum of smoothed frequency times power, above drift
     energy = ndimage.uniform_filter1d(np.log(np.maximum(middle * power, 1e-300)), _BANDS_OF_HUMP)
     energy = np.where(seen.cycles >= 2 * limits.MIN_CYCLES_IN_RECORD.value, energy, -np.inf)
     hump = int(np.argmax(energy))
@@ -136,7 +136,7 @@ def _nearest_summit(fine: Spectrum, near: float) -> int:
 
 
 def _summit(fine: Spectrum, starts: np.ndarray, top: int) -> int:
-    """Return the strongest bin of the strongest band."""
+    """Return the index of the strongest spectral bin in the strongest band."""
     stop = starts[top + 1] if top + 1 < starts.size else fine.frequency.size
     return int(starts[top] + np.argmax(fine.power[starts[top] : stop]))
 
@@ -145,7 +145,7 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
     """Return a line's frequency (centre of its power) with error, and variances of harmonics."""
     f0, error = float(fine.frequency[at]), 0.0
     excess = np.maximum(fine.power - level, 0) * fine.width
-    excess[fine.frequency <= 0] = 0.0  # the remainder of the mean is not part of a line
+    excess[fine.frequency <= 0] = 0.0  # what remains of the mean is not part of a line
     for _ in range(3):
         near = np.abs(fine.frequency - f0) <= max(
             limits.HALF_WIDTH_OF_GATHERED_BAND.value * f0, 2.01 * fine.width[at]

@@ -1,4 +1,4 @@
-"""Agreement of drops and spectrum on a period, and the resulting classification."""
+"""Comparison of the periods from drops and from the spectrum, and class of the oscillation."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def period_verdict(
     duration: float,
     form: WaveformFeatures,
 ) -> PeriodVerdict:
-    """Classify the oscillation by class probabilities and by agreement of drops and spectrum.
+    """Return class and period of an oscillation, if its drops and its spectrum agree.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def period_verdict(
         return PeriodVerdict(kind, frequency, error, count)
     if not seen.kind or (irregular and periods.size < limits.MIN_PERIODS_FOR_SCATTER.value):
         return _undecided("too few drops repeat to tell the period")
-    # the start and stop of trains of oscillation make lines, too
+    # if the oscillation comes in trains, these also make lines
     trains = seen.kind == SLIP_KINDS[2]
     strongest = lines[0].frequency if several and not trains else frequency
     if abs(np.log(frequency / strongest)) > limits.MAX_DIFFERENCE_OF_PERIODS.value:

@@ -15,7 +15,7 @@ SLIP_KINDS = ("regular", "irregular", "intermittent")
 
 
 class Regularity(NamedTuple):
-    """Regularity of an oscillation.
+    """Regularity of an oscillation, share of the time with oscillation, and periods.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Regularity(NamedTuple):
 
 
 def regularity(record: EvenRecord, events: Events) -> Regularity:
-    """Distinguish regular, irregular and intermittent oscillations.
+    """Return whether an oscillation is regular, irregular or intermittent, and its periods.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
     for k in np.flatnonzero(between > limits.MIN_PAUSE.value * usual):
         a, b = events.middle[k], events.middle[k + 1]
         climb = drop * (b - a - 1.3 * usual) / (b - a)
-        # a train ends with a drop and begins with a rise, a reversed one conversely
+        # a train of periods begins with a rise and ends with a drop, or conversely if reversed
         if any(_is_still(record, a + c * usual, b - (1.3 - c) * usual, climb) for c in (0.3, 1.0)):
             paused[k] = True
             quiet += float(b - a - usual)
@@ -82,7 +82,7 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
     for c in (0.3, 1.0):
         for a, b in ((ends[0], first - c * usual), (last + c * usual, ends[1])):
             if b - a > usual and _is_still(record, a, b, drop * min((b - a) / usual, 1.0)):
-                quiet += 0.5 * float(b - a)  # one half for each of the two orders
+                quiet += 0.5 * float(b - a)  # half, because both orders are tried
     share = float(np.clip(1 - quiet / (ends[1] - ends[0]), 0.0, 1.0))
     periods = between[~paused]
     if share < 1 - limits.MIN_QUIET_TIME.value:
@@ -96,12 +96,12 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
 
 
 def scatter(periods: np.ndarray) -> float:
-    """Return the standard deviation over the mean; NaN for fewer than two."""
+    """Return the standard deviation divided by the mean; NaN for fewer than two values."""
     return float(np.std(periods, ddof=1) / periods.mean()) if periods.size > 1 else np.nan
 
 
 def _is_still(record: EvenRecord, start: float, stop: float, climb: float) -> bool:
-    """Return whether friction hardly changes in an interval; a stick would rise by `climb`."""
+    """Return whether friction hardly changes in an interval, compared with a stick's `climb`."""
     part = slice(*np.searchsorted(record.time, [start, stop]))
     values = record.values[part]
     if values.size < 6:
@@ -110,6 +110,6 @@ def _is_still(record: EvenRecord, start: float, stop: float, climb: float) -> bo
     size, longer = divmod(values.size, pieces)  # the first pieces are one sample longer
     first = np.arange(pieces) * size + np.minimum(np.arange(pieces), longer)
     means = np.add.reduceat(values, first) / np.diff(first, append=values.size)
-    # the means of the first and the last piece are one piece length less than the interval apart
+    # the centres of the first and the last piece are one piece closer than the ends
     expected = climb * (1 - 1 / pieces)
     return float(np.ptp(means)) < limits.MAX_CHANGE_IN_PAUSE.value * expected

@@ -24,12 +24,12 @@ from tribolab.arrays.chunks import pieces
 from tribolab.friction.oscillation import limits
 from tribolab.friction.run_out import turned
 
-_TURNS_PER_FIT = 8.0  # turns that one fit covers
+_TURNS_PER_FIT = 8.0  # turns of the rig in one fit
 _MAX_ORDER = 8
 _BLOCKS_PER_TURN = 32  # blocks per turn to which waves are fitted
 # distances from a line, in spectral widths, between which its surroundings lie
 _WIDTHS_TO_SURROUNDINGS = (1.0, 1.5, 2.0)
-_FAST_PIECE_SAMPLES = 64  # samples in a piece for aliased waves
+_FAST_PIECE_SAMPLES = 64  # samples in one fit of waves too fast for the sampling rate
 _MAX_FAST_ORDER = 2
 REPEATS = "repeats"  # word for such waves in the text of ``instrument``
 _TIMES = {1: "once", 2: "twice"}
@@ -61,20 +61,20 @@ class RigWave(NamedTuple):
 
 
 class RigMotion(NamedTuple):
-    """Angular frequency [rad/s] of a rotating or reciprocating rig, and the name of its period."""
+    """Angular frequency [rad/s] of a rotating or reciprocating rig; name of its period."""
 
     rate: np.ndarray | float
     what: str
 
     def angle(self, time: np.ndarray, part: slice) -> np.ndarray:
-        """Return the angle [rad] of the samples of a part at given times [s]."""
+        """Return the rig's angle [rad] at given times [s] in an index range of samples."""
         if isinstance(self.rate, float):
             return self.rate * (time - time[:1])
         return turned(time, self.rate[part])
 
 
 def motion_of(run: xr.Dataset) -> RigMotion | None:
-    """Return the rotation of a rig, or its reciprocation in unseparated strokes.
+    """Return the rotation of a rig, or its strokes at a stated frequency; None if unknown.
 
     Parameters
     ----------
@@ -130,7 +130,8 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
     if found is not None:
         return found
     fast = np.arange(slow + 1, _MAX_FAST_ORDER + 1)
-    seen = np.abs((fast * turns / n + 0.5) % 1 - 0.5)  # cycles per sample
+    # apparent (aliased) frequency in cycles per sample
+    seen = np.abs((fast * turns / n + 0.5) % 1 - 0.5)
     fast = fast[
         (seen > limits.MIN_DISTANCE_OF_ALIAS.value)
         & (seen < 0.5 - limits.MIN_DISTANCE_OF_ALIAS.value)

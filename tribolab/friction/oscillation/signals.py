@@ -1,4 +1,4 @@
-"""Friction of each segment, positive as resistance, for the analysis of stick-slip."""
+"""Friction of each segment, positive if it resists motion, for the analysis of stick-slip."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tribolab.friction.oscillation import limits
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
 
-_SIGN_SAMPLES = 100_000  # samples of a segment that determine its sign
+_SIGN_SAMPLES = 100_000  # most samples of a segment from which its sign is determined
 
 
 class SegmentSignal(NamedTuple):
-    """Friction of one segment, positive as resistance, and the sensor signal."""
+    """Friction of one segment, positive if it resists motion, and the signal of its sensor."""
 
     part: slice
     time: np.ndarray
@@ -71,7 +71,7 @@ def signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
                 yield SegmentSignal(part, time[part], nothing, raw, load)
     elif signal == "friction_coefficient":
         ratio = run["friction_coefficient"].values
-        # a coefficient that never changes sign contains no direction
+        # a coefficient that never changes sign was recorded without direction
         begins = [ratio[s][:_SIGN_SAMPLES] for s in parts]
         signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
         for part, sign in one_by_one(zip(parts, direction, strict=True)):

@@ -62,7 +62,7 @@ class Scaling(NamedTuple):
 def stick_slip_curve(
     slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1, **labels: Sequence[Label]
 ) -> xr.Dataset:
-    """Return stick-slip against speed over several runs.
+    """Return stick-slip against sliding speed, from the segments of several runs.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def stick_slip_curve(
     kind = np.concatenate([s["waveform"].values for s in slips]).astype(object)
     own = _column(slips, "dominant_frequency")
     named = np.concatenate([[_RESONANCE in str(t) for t in s["instrument"].values] for s in slips])
-    # only several runs of one speed each together show that a frequency does not depend on speed
+    # if each run has one speed, only all of them show that a frequency does not depend on speed
     rings = named.astype(bool) | ringing(kind, own, speed)
     kind[rings] = STEADY_SLIDING
     known = (kind != NOT_LOOKED_AT) & (speed > 0)
@@ -155,7 +155,7 @@ _SCALING = {
 def _join_curves(
     slips: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
 ) -> xr.Dataset:
-    """Return the curves of all combinations of labels, joined."""
+    """Return the curves of all combinations of labels as one dataset."""
     groups = grouped(slips, labels, "stick_slip_curve")
     curves = [(stick_slip_curve(group, speed_tolerance), key) for group, key in groups]
     joined = joined_curves(curves)
@@ -225,7 +225,7 @@ def _row(
     decided = int((kind[group] != NOT_CLEAR).sum())
     if moving.size > 0.5 * decided:
         waveform, regularity = _most_common(kind[moving]), _most_common(regular[moving])
-    else:  # few segments are not representative of the contact
+    else:  # too few segments oscillate to represent the contact
         moving = moving[:0]
         waveform = STEADY_SLIDING if decided >= 0.5 * group.size else NOT_CLEAR
     row = {

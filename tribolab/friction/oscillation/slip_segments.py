@@ -154,7 +154,8 @@ def stick_slip(run: xr.Dataset, segments: xr.Dataset) -> xr.Dataset:
         remarks.append(_remark(seen, is_clipped(signal.raw), v))
     data = slip_columns(examined, speed, np.array(loads))
     saw = (data["waveform"] == CLASSES[1]) & (data["regularity"] == SLIP_KINDS[0])
-    rig = np.full(saw.size, run.attrs.get(STIFFNESS, np.nan))  # else the steepest rise
+    # if unknown, the steepest rise is used
+    rig = np.full(saw.size, run.attrs.get(STIFFNESS, np.nan))
     bounds = critical_stiffness(
         data["drop"], data["recurrence_distance"],
         np.where(np.isnan(rig), data["loading_stiffness"], rig),

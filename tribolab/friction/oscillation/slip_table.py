@@ -184,7 +184,7 @@ def _count(seen: Examined | str) -> int:
 def slip_columns(
     examined: list[Examined | str], speed: np.ndarray, loads: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Return columns (segment): numbers, and the class and method as text."""
+    """Return the numbers, class and method of all segments as columns (segment)."""
     nothing = SlipRow(*[np.nan] * len(SlipRow._fields))
     rows = [
         nothing if isinstance(e, str) else _row(e, v, n)
@@ -209,7 +209,7 @@ def slip_columns(
 
 
 def line_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
-    """Return all significant oscillations on (segment, line), the strongest first.
+    """Return a table of the significant oscillations (segment, line), the strongest first.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ _LINE = ("line_frequency", "line_wavelength", "line_swing", "line_false_alarm_pr
 
 
 def spectra_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
-    """Return all spectra on one logarithmic grid of frequency, and of inverse wavelength."""
+    """Return all spectra on common logarithmic grids of frequency and of inverse wavelength."""
     names = {"psd": "power", "psd_background": "background", "psd_significant": "level"}
     seen = [None if isinstance(e, str) else e.oscillation for e in examined]
     data = {}

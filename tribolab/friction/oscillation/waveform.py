@@ -72,7 +72,7 @@ def describe_waveform(
         return WaveformFeatures(np.nan, 1.0, skewness, np.nan, np.nan, 0)
     longer, shorter = int((rise > fall).sum()), int((rise < fall).sum())
     p_value = 1.0
-    if longer + shorter:  # the exact two-sided sign test
+    if longer + shorter:  # exact two-sided sign test
         tail = float(special.bdtr(min(longer, shorter), longer + shorter, 0.5))
         p_value = min(1.0, 2 * tail)
     return WaveformFeatures(
@@ -98,7 +98,7 @@ WAVEFORM_LIMITS = {
     "harmonics": (0.5, 0.0, 1.2),
     "asymmetry": (0.0, -0.5, 0.5),  # 0.5 minus the share of the falling part
     "lean": (0.0, 0.0, 0.5),  # absolute value of the asymmetry
-    "reversal": (0.0, 0.0, 6.0),  # -log10 of the p value that rises and falls last equally long
+    "reversal": (0.0, 0.0, 6.0),  # -log10(p) of the test that rises and falls last equally long
     "skewness": (0.0, -4.0, 4.0),
     "sharpness": (0.0, 0.0, 4.0),  # absolute value of the skewness
     "scatter": (0.5, 0.0, 0.8),  # standard deviation over mean of the periods

@@ -1,1 +1,1 @@
-"""Points of a curve from strokes: grouping of speeds, and means."""
+"""Points of a measured curve: grouping of strokes by speed, and their means."""

@@ -1,4 +1,4 @@
-"""Mean of a few repeats with different errors and poorly known scatter.
+"""Mean of a few repeats whose errors differ and whose scatter is poorly known.
 
 Notes
 -----

@@ -1,4 +1,4 @@
-"""Outlying repeats, with an offset far beyond the repeatability of other conditions.
+"""Detection of outlying repeats, by the repeatability under other conditions.
 
 Notes
 -----
@@ -131,7 +131,7 @@ def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
 
 
 def _odd_of_one(condition: int, values: np.ndarray) -> list[OddRepeat]:
-    """Return the outlier among the repeats of the only condition, if any."""
+    """Return the outlier, if any, among the repeats of a condition that is the only one."""
     # imported late for a quick start
     from scipy import special
 

@@ -12,7 +12,7 @@ Verdict = Literal["clear", "fair", "unclear"]
 
 
 class SpeedGroups(NamedTuple):
-    """The group of each speed, numbered from the slowest, and how clearly the groups differ."""
+    """Group number of each speed, from the slowest on, and how clearly the groups differ."""
 
     group: np.ndarray
     verdict: Verdict
@@ -70,7 +70,7 @@ def _group_by_jump(x: np.ndarray, most: float) -> tuple[np.ndarray, Verdict]:
         return np.zeros(1, int), "clear"
     gaps = np.maximum(np.diff(x), floor)
     steps = np.unique(gaps)
-    # a threshold at each gap that may be within a group, and the jump to the next wider one
+    # each gap up to the tolerance is a trial threshold; its jump is the ratio to the next wider gap
     within = steps[steps <= most]
     wider = np.append(steps[1:], np.nan)[: within.size]
     jumps = np.where(np.isnan(wider), 1.2 * most / np.maximum(within, 1e-300), wider / within)
@@ -111,7 +111,7 @@ def _link_speeds(x: np.ndarray, most: float) -> np.ndarray:
     # imported late: scipy.cluster loads slowly, and clear groups need none of it
     from scipy.cluster.hierarchy import fcluster, linkage
 
-    reach = max(most - limits.SPEED_FLOOR.value, 0.0)  # a cell is as wide as the floor
+    reach = max(most - limits.SPEED_FLOOR.value, 0.0)  # minus the width of a cell
     found = fcluster(linkage(middle[:, None], "complete"), reach, "distance")[which]
     return np.concatenate([[0], np.cumsum(np.diff(found) != 0)])
 

@@ -19,7 +19,7 @@ from tribolab.friction.zero.of_run import PAIRED
 
 
 class Observations(NamedTuple):
-    """Independent observations, one entry each: pairs of strokes, and strokes without a partner.
+    """Independent observations of friction: pairs of strokes, and strokes without a partner.
 
     `sem` and `u95` are of the mean as an estimate beyond the stroke; `shared` is the part of `sem`
     that all strokes of the run have in common; `order` is the position in the run; `variance` is
@@ -78,7 +78,7 @@ def _observe_run(friction: xr.Dataset, run: int) -> Observations:
 
 
 def pairs_of(friction: xr.Dataset) -> np.ndarray:
-    """Return the number of the pair of each segment; -1 for none (segment)."""
+    """Return the pair number of each segment; -1 without a partner (segment)."""
     if "pair" not in friction or SegmentAttributes.from_attrs(friction.attrs).offset not in PAIRED:
         return np.full(friction.sizes["segment"], -1.0)
     return friction["pair"].values.astype(float)

@@ -189,7 +189,7 @@ def _stroke_history(
 
 
 def _stretch_history(run: xr.Dataset, friction: xr.Dataset) -> History | None:
-    """Return the history of sliding in one direction at one speed; None for other runs."""
+    """Return the friction history of a run with one direction and speed; None for other runs."""
     speed, direction = friction["sliding_speed"].values, friction["direction"].values
     start, stop = friction["start"].values, friction["stop"].values
     lasted = stop - start

@@ -23,14 +23,14 @@ from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import running_median
 from tribolab.friction.segments.proof import Readings, changes_significantly
 
-_BINS_OF_PIECE = 16  # bins within a piece
+_BINS_OF_PIECE = 16  # number of bins into which a piece is divided
 _NEIGHBOURHOOD = 1.5  # lengths of a piece that are examined on each side of it
 # up to this many readings in a piece, a bin has too few to estimate their noise
 _FEW_READINGS = 16 * _BINS_OF_PIECE
 
 
 class MeanVelocities:
-    """Mean velocities of a record in bins, from its velocity or its position.
+    """Mean velocities of a record over short intervals (bins), from its velocity or position.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def _fit(place: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
 
 
 def _scatter(values: np.ndarray) -> float:
-    """Return the standard deviation from bin to bin, which slow changes do not affect."""
+    """Return the standard deviation of bins by their noise, regardless of slow changes."""
     if values.size < 4:
         return 0.0
     return float(median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6)))
@@ -126,7 +126,7 @@ def constant_part(data: MeanVelocities, first: int, last: int, drift: float) -> 
         Relative change that a constant speed may show.
     """
     noise = 0.0
-    # coarser bins if noise hides the ends
+    # try coarser bins if noise hides the ends
     for count in (4 * _BINS_OF_PIECE, 2 * _BINS_OF_PIECE, _BINS_OF_PIECE):
         count = min(count, (last - first) // 2)
         if count < 2 * limits.MIN_BINS_OF_CURVATURE.value:
@@ -188,7 +188,7 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
 
 
 def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
-    """Return whether bins change significantly by more than `most` along the piece."""
+    """Return whether the speed changes significantly by more than `most` along the piece."""
     cubic = _fit(place, values, 3)
     left = float(((values - cubic) ** 2).sum())
     about = float(((values - values.mean()) ** 2).sum())
@@ -228,7 +228,7 @@ def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, mo
 def _is_one_motion(
     data: MeanVelocities, inside: np.ndarray, begin: float, end: float, level: float, drift: float
 ) -> bool:
-    """Return whether one smooth motion passes through the piece and its neighbours."""
+    """Return whether the piece and its neighbourhood are one smooth motion, not a plateau."""
     count = inside.size
     width = (end - begin) / count
     steps = np.arange(int(_NEIGHBOURHOOD * count) + 1)
@@ -237,7 +237,7 @@ def _is_one_motion(
         inner = (edges >= data.time[0] - width / 2) & (edges <= data.time[-1] + width / 2)
         values = data.means(edges[inner]) if inner.any() else np.zeros(0)
         sides.append(values)
-    sides[0] = sides[0][::-1]  # ordered outwards from the piece
+    sides[0] = sides[0][::-1]  # from the piece outwards
     near = []
     for values in sides:
         close = np.abs(

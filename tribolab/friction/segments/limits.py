@@ -4,7 +4,7 @@ from tribolab.core.limit import Count, Limit
 
 _STROKES = "judgement; checked by tests/detection/stroke_patterns.py, seeds from 10 000"
 _TRICKY = "judgement; checked by tests/detection/tricky_runs.py, seeds 0 to 9"
-DETECTION = {  # of constant speed: defaults of `find_segments`
+DETECTION = {  # limits of constant speed, the defaults of `find_segments`
     "resolution": Limit(0.02, "1", "relative speed difference that separates two plateaus"),
     "drift": Limit(0.10, "1", "relative speed change within a plateau, above which it is a ramp"),
     "min_samples": Count(10, "1", "fewest samples in a segment"),

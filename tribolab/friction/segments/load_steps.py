@@ -93,6 +93,6 @@ def _trim_level(mean: np.ndarray, first: int, last: int) -> tuple[int, int]:
     near = np.flatnonzero(
         np.abs(mean[first:last] - level) <= limits.MAX_SCATTER_OF_LEVEL.value * abs(level)
     )
-    if near.size < 0.7 * (last - first):  # no level
+    if near.size < 0.7 * (last - first):  # the load is not at one level
         return first, first
     return first + int(near[0]), first + int(near[-1]) + 1

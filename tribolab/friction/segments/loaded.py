@@ -137,7 +137,7 @@ def _cut_at_contact(
 
 
 def _grow_bins(seed: np.ndarray, allowed: np.ndarray) -> np.ndarray:
-    """Return the contiguous allowed bins that contain a seed, including load ramps."""
+    """Return a mask of those sequences of `allowed` bins that contain a `seed` bin."""
     allowed = allowed | seed
     number = np.cumsum(np.diff(allowed, prepend=False) & allowed)
     holding = np.unique(number[seed])

@@ -151,7 +151,7 @@ def _leftover(
     """Return the pieces of the interval between two accepted pieces, found with finer blocks."""
     if first >= last:
         return []
-    if last - first == time.size:  # nothing was kept: continue with shorter intervals
+    if last - first == time.size:  # no piece was accepted: halve the interval
         middle = (first + last) // 2
         return [
             piece

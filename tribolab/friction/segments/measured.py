@@ -135,7 +135,7 @@ def _mean_velocity(
 def _mean_slope(
     run: xr.Dataset, start: np.ndarray, stop: np.ndarray, guess: np.ndarray, degree: int
 ) -> np.ndarray:
-    """Return the mean slope of the position over each trimmed segment, from an odd polynomial.
+    """Return the mean velocity over each trimmed segment, from a polynomial fit of the position.
 
     A line is insufficient for a stroke whose speed is not constant: over a whole stroke of a sine
     it is 22 % steeper than distance over time.

@@ -1,4 +1,4 @@
-"""Noise of a velocity record: its level by speed, rounding, and commanded speeds."""
+"""Noise of a velocity record as a function of speed; rounding; detection of set-points."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from tribolab.arrays.scratch import room
 from tribolab.friction.segments import limits
 
 LAG_BLOCKS = 4  # distance, in blocks or windows, beyond which noise counts as uncorrelated
-HEIGHT_DIGITS = 9  # digits of a peak height: breaks that differ by less are equally high
+# decimals to which jumps of velocity are compared: smaller differences are rounding
+HEIGHT_DIGITS = 9
 
 
 class Noise(NamedTuple):
@@ -109,7 +110,7 @@ def is_commanded(velocity: np.ndarray, step: float) -> bool:
 
 
 def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
-    """Estimate the absolute floor and the relative part of the noise from neighbouring blocks.
+    """Estimate the noise floor and the noise proportional to speed, from neighbouring blocks.
 
     The spread of differences is estimated per quarter decade of speed, because a floor that is
     negligible at high speed may dominate at the lowest. The floor is no lower than `least` [m/s].
@@ -153,7 +154,7 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
 
 
 def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return speed, first and second (near, distant) differences, scaled to white noise."""
+    """Return speed, and its first and second differences scaled to the noise of one block."""
     far = max(1, min(LAG_BLOCKS, (velocity.size - 1) // 8))
     left, here, right = velocity[: -2 * far], velocity[far:-far], velocity[2 * far :]
     before = velocity[far - 1 : -far - 1]

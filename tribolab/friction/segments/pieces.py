@@ -15,7 +15,7 @@ KEPT = ("constant", "at rest")
 
 
 class VelocityPiece(NamedTuple):
-    """Piece of a velocity record: samples [first, last), mean velocity, and class."""
+    """Piece of a velocity record: samples [first, last), kind, velocity, its change and error."""
 
     first: int
     last: int
@@ -40,7 +40,7 @@ def moving(
     constancy: ConstancyLimits,
     velocity: np.ndarray | None = None,
 ) -> list[VelocityPiece]:
-    """Reclassify creep as rest if it is slow compared with the highest speed.
+    """Return the pieces with creep that is far slower than the highest speed marked as rest.
 
     Also reclassify the noise of a speed recorded without its sign, whose mean is not zero.
 
@@ -173,7 +173,7 @@ def _merge_pauses(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> li
 
 
 def join_equal(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Join adjacent pieces of equal class and velocity."""
+    """Join adjacent pieces of equal kind and velocity."""
     result: list[VelocityPiece] = []
     for piece in pieces:
         if result and _same(result[-1], piece, constancy):
@@ -226,7 +226,7 @@ def bridge_bumps(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> lis
 
 
 def drop_unproven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Reclassify a short piece as ramp unless the data show that its speed is constant."""
+    """Reclassify a short plateau as a ramp unless the data show that its speed is constant."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
         around = pieces[max(i - 2, 0) : i] + pieces[i + 1 : i + 3]
@@ -243,7 +243,7 @@ def drop_unproven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> li
 
 
 def drop_transient(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Reclassify as ramp a short drifting piece that leads into a long plateau."""
+    """Reclassify a short drifting piece next to a long plateau as a ramp."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
         if piece.kind != "constant":

@@ -1,4 +1,4 @@
-"""Plateaus of a noisy velocity, from blocks at many scales.
+"""Plateaus of a noisy velocity, found by comparing means over windows of many lengths.
 
 Notes
 -----
@@ -24,13 +24,14 @@ from tribolab.arrays.medians import median
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import HEIGHT_DIGITS, LAG_BLOCKS, Noise
 
-_COST_DIGITS = 6  # digits of a cost: mergers that differ by less have equal cost
+# decimals to which costs of mergers are compared: smaller differences are rounding
+_COST_DIGITS = 6
 # smaller squares of residuals, relative to all squares, are rounding errors
 _ROUNDING_OF_SQUARES = 1e-11
 
 
 class Pieces(NamedTuple):
-    """Straight pieces of the block series: [first, last) blocks, mean, change along the line."""
+    """Pieces with a straight line v(t): blocks [first, last), mean, change, and their errors."""
 
     first: np.ndarray
     last: np.ndarray
@@ -118,7 +119,7 @@ def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
 def _moments(
     time: np.ndarray, velocity: np.ndarray, variance: np.ndarray, starts: np.ndarray
 ) -> np.ndarray:
-    """Return weight, mean time, mean velocity and centred second moments of pieces, as columns."""
+    """Return block count, weight, means and centred second moments of pieces (moment, piece)."""
     weight = 1 / variance
     add = np.add.reduceat
     size = np.diff(np.append(starts, time.size))
@@ -131,7 +132,7 @@ def _moments(
 
 
 def _merge_moments(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the moments of two merged pieces (pairwise update, stable)."""
+    """Return the moments of each two pieces after merging them."""
     total = a[1] + b[1]
     share = a[1] * b[1] / total
     dt, dv = b[2] - a[2], b[3] - a[3]

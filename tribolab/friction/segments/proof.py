@@ -29,13 +29,13 @@ from numpy.polynomial import legendre
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import running_median
 
-_FITTED_READINGS = 512  # readings of a fit; more are averaged
+_FITTED_READINGS = 512  # most readings of a fit; more are averaged in groups
 # smallest outlier over the range of velocities (False), positions (True)
 _OUTLIER_SHARES = {False: 0.2, True: 0.02}
-_SIDE_LENGTHS = (0.5, 1.0)  # lengths of the neighbourhood examined, relative to the piece
+_SIDE_LENGTHS = (0.5, 1.0)  # trial lengths of the neighbourhood, relative to the piece
 _END_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # trial shifts of a piece's end, relative to its length
 _TURN_PLACES = np.linspace(-0.8, 0.8, 17)  # trial positions of a turn, relative to half the window
-_TURN_REFINEMENTS = 4  # refinements of the position of the turn, tenfold each
+_TURN_REFINEMENTS = 4  # number of refinements of the position of the turn
 
 
 class Readings(NamedTuple):
@@ -77,7 +77,7 @@ class Fit(NamedTuple):
 
 
 def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
-    """Return the least-squares fit, with fewer effective readings if residuals are correlated."""
+    """Fit a basis by least squares; correlated residuals reduce the effective readings."""
     terms = np.linalg.lstsq(basis, values, rcond=None)[0]
     rest = values - basis @ terms
     n, k = basis.shape
@@ -101,19 +101,16 @@ def _columns(readings: Readings, place: np.ndarray, motion: list[np.ndarray]) ->
 
 
 def change_along(readings: Readings, begin: float, end: float) -> tuple[float, float]:
-    """Return the change of speed of the parabola through a piece, and its standard error [m/s].
+    """Return the change of speed along a piece, by a parabola, and its standard error [m/s].
+
+    Both are NaN for too few readings.
 
     Parameters
     ----------
     readings
         Readings of the record.
     begin, end
-        The piece [s].
-
-    Returns
-    -------
-    tuple
-        Both NaN for too few readings.
+        Start and end of the piece [s].
 
     Examples
     --------
@@ -143,7 +140,7 @@ def change_along(readings: Readings, begin: float, end: float) -> tuple[float, f
 
 
 def changes_significantly(readings: Readings, begin: float, end: float, most: float) -> bool:
-    """Return whether the parabola through a piece clearly changes by more than `most` [m/s]."""
+    """Return whether the speed clearly changes by more than `most` [m/s] along a piece."""
     change, error = change_along(readings, begin, end)
     return bool(change > most + limits.MIN_ERRORS_OF_CHANGE.value * error)
 
@@ -173,7 +170,7 @@ def is_proven(
 def _is_level(
     readings: Readings, begin: float, end: float, sides: tuple[bool, bool], side: float
 ) -> bool:
-    """Return whether a level with flanks fits better than one smooth motion or one reversal."""
+    """Return whether a plateau with flanks fits better than a smooth motion or a reversal."""
     size = side * (end - begin)
     window = readings.within(begin - sides[0] * size, end + sides[1] * size)
     time, values = window.time, window.values - window.values.mean()

@@ -1,4 +1,4 @@
-"""Velocity from a position record, by robust slopes over blocks."""
+"""Velocity from a position record: slopes over blocks, without outliers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tribolab.arrays.scratch import room
 from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import quantum
 
-_DIGIT_SAMPLE = 8192  # readings sufficient to find their last digit
+_DIGIT_SAMPLE = 8192  # this many readings suffice to find their last digit
 _DIGIT_ROUNDING = 0.01  # rounding errors of arithmetic, relative to a digit
 _RATE_SAMPLES = 8  # samples on each side of a jump that determine the usual rate
 
@@ -24,17 +24,17 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     """
     if time.size < 3:
         return 0.0
-    off = np.empty(time.size - 2)  # sorted as a whole, not in pieces
+    off = np.empty(time.size - 2)  # kept in full, because the median needs all
     for first, last in pieces(0, off.size):
         off[first:last] = _chord_error(time[first : last + 2], position[first : last + 2])
     noise = float(np.median(off, overwrite_input=True) / 0.6745)
     rounding = digit(position) / np.sqrt(12)
-    # the median distance of mostly repeated readings is zero
+    # if most readings repeat, their median distance is zero
     return max(noise, rounding) or quantum(position) / np.sqrt(12)
 
 
 def _chord_error(time: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Return each reading's distance from the chord of its neighbours, scaled to white noise."""
+    """Return each reading's distance from the line between its neighbours, scaled to its noise."""
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
@@ -42,7 +42,7 @@ def _chord_error(time: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def is_staircase(position: np.ndarray) -> bool:
-    """Return whether most readings repeat the one before: digits are coarser than the motion."""
+    """Return whether most readings equal the one before, as digits are coarser than the motion."""
     steps = position.size - 1
     still = sum(
         int(np.count_nonzero(np.diff(position[a : b + 1]) == 0)) for a, b in pieces(0, steps)
@@ -51,7 +51,7 @@ def is_staircase(position: np.ndarray) -> bool:
 
 
 def digit(position: np.ndarray) -> float:
-    """Return the resolution of the readings [m]; 0 if they are not multiples of one.
+    """Return the resolution of the readings [m]; 0 if they are not multiples of a step.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     middle = t.mean(axis=1, keepdims=True)
     t, x = t - middle, x - x.mean(axis=1, keepdims=True)
     slope = (t * x).sum(axis=1) / (t * t).sum(axis=1)
-    # one reweighting: outliers (stale or wild readings) are omitted
+    # fit again without outliers
     rest = x - slope[:, None] * t
     limit = 4 * np.median(np.abs(rest), axis=1, keepdims=True) / 0.6745
     weight = (np.abs(rest) <= np.maximum(limit, 1e-300)).astype(float)
@@ -241,7 +241,7 @@ def velocity_blocks(
 
 
 def _is_accurate(speed: np.ndarray, error: float) -> bool:
-    """Return whether the velocities of the blocks are accurate over most of the distance."""
+    """Return whether block velocities are accurate at the speeds that cover most distance."""
     sure = np.maximum(speed - 3 * error, 0.0)  # motion within the noise does not count as distance
     if not sure.any():
         return False

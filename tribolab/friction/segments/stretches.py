@@ -32,7 +32,7 @@ class Stretch(NamedTuple):
 
 
 def name_of(run: xr.Dataset) -> str:
-    """Return the name of the run for errors: its source file if known."""
+    """Return the name of the run for error messages: its source file if known."""
     return str(run.attrs.get("source", "run"))
 
 
@@ -42,7 +42,7 @@ def velocity_source(run: xr.Dataset) -> str:
     clocked = RunAttributes.from_attrs(run.attrs).time_source != "row number"
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
         if name == "position" and stated and not clocked:
-            continue  # a speed is not derived from rows counted as seconds
+            continue  # without a clock, a position gives no speed
         if name in run and anywhere(np.isfinite, run[name].values):
             return source
     if "step" in run:
@@ -243,7 +243,7 @@ def _split_at_gaps(
 
 
 def _is_gap(time: np.ndarray, index: int, piece: VelocityPiece) -> bool:
-    """Return whether the pause after a sample is much longer than usual in its piece."""
+    """Return whether the time to the next sample is much longer than usual in a piece."""
     usual = (time[piece.last - 1] - time[piece.first]) / max(piece.last - piece.first - 1, 1)
     return bool(time[index + 1] - time[index] > 3 * usual)
 

@@ -219,7 +219,7 @@ def _by_velocity(run: xr.Dataset) -> _Parts:
 
 
 def _limit(run: xr.Dataset, velocity: np.ndarray) -> float | np.ndarray:
-    """Return the speed below which the direction of a sample is unknown [m/s]."""
+    """Return the speed below which a sample's direction counts as unknown [m/s]."""
     step = _crank_steps(run)
     if step is None:
         return limits.MIN_SPEED_OF_STROKE.value * float(np.percentile(np.abs(velocity), 90))

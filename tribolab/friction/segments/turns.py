@@ -27,7 +27,7 @@ def last_side(values: np.ndarray, low: float | np.ndarray, high: float | np.ndar
 
 
 def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the samples at which a position reverses, and the directions between them.
+    """Return the indices of samples at which a position reverses, and directions in between.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.empty(0, dtype=int), np.empty(0, dtype=int)
     back = abs(position[-1] - middle) < half
     change = np.append(change, position.size) if back else change
-    # between two changes the position is on one side: its farthest point is a turn
+    # between two changes of side, the farthest point is a turn
     side = state[change[:-1]]
     inside = np.arange(change[0], change[-1])
     part = np.repeat(np.arange(side.size), np.diff(change))
@@ -134,7 +134,7 @@ def _strokes_of(
     """Return the straight strokes of a piece; empty if most are not straight."""
     part = position[piece.first : piece.last]
     if np.ptp(part) < limits.MIN_STROKE_OVER_NOISE.value * noise:
-        return []  # reversals within the noise
+        return []  # its motion is within the noise
     turn = turns_of(part)[0] + piece.first
     if turn.size < limits.MIN_STROKES_OF_STRETCH.value:
         return []

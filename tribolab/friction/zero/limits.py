@@ -1,4 +1,4 @@
-"""Limits that decide on the zero of the forces."""
+"""Limits for the determination of the zeros of the forces."""
 
 from tribolab.core.limit import Count, Limit
 

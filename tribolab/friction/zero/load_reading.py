@@ -18,11 +18,12 @@ from tribolab.friction.zero.words import of_leak, of_retained_load
 # half width over standard deviation of a uniform distribution
 WIDTH_OVER_SIGMA = np.sqrt(3)
 _NEAREST_RESTS = 4  # nearest rests that are compared with a segment
-_READING_BLOCKS = 5  # blocks of a reading: their scatter includes slow waves and ramps of the load
+# blocks into which readings are divided; their means scatter by slow waves and ramps, too
+_READING_BLOCKS = 5
 
 
 class LoadReading(NamedTuple):
-    """Standard uncertainty of the load of each segment [N] (segment), with doubts."""
+    """Standard uncertainty of each segment's load [N] (segment), and doubts about the load."""
 
     error: np.ndarray
     doubts: tuple[Doubt, ...]
@@ -72,7 +73,7 @@ def load_reading(
 
 
 def _retained(offset: np.ndarray, load: float) -> LoadReading:
-    """Return the error of the zero if some load was retained at the rests."""
+    """Return the error of the load's zero, as some load may have remained at the rests."""
     level = np.where(offset > limits.UNLOADED_SHARE.value * load, offset, 0.0)
     usual = float(np.mean(level))
     doubts: tuple[Doubt, ...] = ()
@@ -192,6 +193,6 @@ def _tenth(values: np.ndarray, order: slice) -> tuple[float, float]:
 
 
 def _mean_of_blocks(values: np.ndarray) -> tuple[float, float]:
-    """Return a mean and its standard error, including slow waves and ramps."""
+    """Return the mean of readings and its standard error, which includes slow waves and ramps."""
     means = [float(np.nanmean(block)) for block in np.array_split(values, _READING_BLOCKS)]
     return float(np.mean(means)), float(np.std(means, ddof=1)) / np.sqrt(_READING_BLOCKS)

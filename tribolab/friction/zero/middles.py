@@ -84,7 +84,8 @@ def middles(
         place = np.arange(known.size)
         low, high = np.maximum(place - 1, 0), np.minimum(place + 1, known.size - 1)
         chord = (m[high] - m[low]) / (t[high] - t[low])
-        if known.size > 2:  # the first and last: slope of the adjacent interval
+        # the first and the last pair have the slope of the interval next to them
+        if known.size > 2:
             before[0], after[-1] = step[1], step[-2]
         limit = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
         limited = np.sign(chord) * np.minimum(
@@ -106,7 +107,7 @@ class StrokeSums(NamedTuple):
 def interpolated(
     middles: Middles, pair: np.ndarray, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, StrokeSums]:
-    """Return the zero at each segment from the middles of the loops, its drift, and error terms.
+    """Return zero and drift at each segment from the middles of the loops, and terms of error.
 
     Returns
     -------
@@ -149,7 +150,7 @@ def interpolated(
 def error_of_rows(
     rows: StrokeSums, middles: Middles, own: np.ndarray, time: np.ndarray
 ) -> np.ndarray:
-    """Return the standard error of each segment's force without its zero.
+    """Return the standard error of each segment's force minus its zero.
 
     Parameters
     ----------
@@ -178,7 +179,7 @@ def error_of_rows(
     when = when - when.min(axis=1, keepdims=True)
     walk = np.minimum(when[:, :, None], when[:, None, :])
     slow = np.maximum((product * walk).sum(axis=(1, 2)), 0.0)
-    # with or without a common drift, whichever is smaller: few loops hardly determine a drift
+    # the smaller of both, because few loops hardly determine a common drift
     moved = [
         np.maximum(variance, moves.fast * fast) + moves.rate * slow
         for moves in _movements(middles, error)

@@ -1,4 +1,4 @@
-"""Zero of the friction signal of a run, from rests, strokes, sign, and stated values."""
+"""Zero of a run's friction signal, from rests, strokes and stated values; lost signs."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ def _segment_numbers(segments: xr.Dataset) -> np.ndarray:
 def _pairs(
     segments: xr.Dataset, settings: Settings, rests: Zeros | None, stated: float
 ) -> np.ndarray:
-    """Return pairs of equal speed, or of any speeds if no other zero is available."""
+    """Return pairs of strokes at equal speed, or at any speed if the zero is otherwise unknown."""
     pair = pair_strokes(segments, settings.pair_tolerance)
     wanted = settings.offset == "half loop" or (
         settings.offset == "auto" and rests is None and not np.isfinite(stated)
@@ -243,5 +243,5 @@ def _fold(
     force, speed = run[name].values, segments["sliding_speed"].values
     ways = (direction > 0).any() and (direction < 0).any()
     if not ways and load.max(initial=0.0) > LOADS_DIFFER.value * load.min(initial=np.inf):
-        return SIGNED  # load steps also take the force to zero and back
+        return SIGNED  # at load steps the force goes to zero and back, too
     return folded(ForceTrace(force, pressed, parts, mean, error, direction, rest, speed=speed))

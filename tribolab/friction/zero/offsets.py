@@ -25,7 +25,7 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
         if pair[i] >= 0 or direction[i] * direction[i + 1] != -1:
             continue
         mean = (speed[i] + speed[i + 1]) / 2
-        alike = not abs(speed[i] - speed[i + 1]) > tolerance * mean  # unknown speeds may pair
+        alike = not abs(speed[i] - speed[i + 1]) > tolerance * mean  # true also for unknown speeds
         if "set_speed" in segments and tolerance <= limits.MAX_SPEED_DIFFERENCE_OF_PAIR.value:
             wanted = np.abs(segments["set_speed"].values[i : i + 2])
             alike &= not abs(wanted[0] - wanted[1]) > 1e-6 * abs(wanted).max()
@@ -36,7 +36,7 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
 
 
 class Wander(NamedTuple):
-    """Drift of a zero: variance between neighbouring strokes [u2], and random-walk rate [u2/s]."""
+    """Drift of a zero: variance from stroke to stroke [u2], and rate of a random walk [u2/s]."""
 
     fast: float
     rate: float

@@ -1,4 +1,4 @@
-"""Inputs and result of the zero determination."""
+"""Inputs and result of the determination of the zero of friction."""
 
 from __future__ import annotations
 

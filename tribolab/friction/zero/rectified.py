@@ -43,7 +43,7 @@ class Pressed:
         return self._share * float(np.nanmedian(loads, overwrite_input=True))
 
     def within(self, part: slice) -> np.ndarray:
-        """Return a mask of the samples of an interval under load."""
+        """Return a mask of an interval's samples that are under load."""
         if self._normal is None:
             return np.ones(len(range(*part.indices(part.stop))), dtype=bool)
         return np.abs(self._normal[part]) > self._least
@@ -83,12 +83,12 @@ class ForceTrace(NamedTuple):
     speed: np.ndarray | None = None
 
     def within(self, part: slice) -> np.ndarray:
-        """Return the finite readings of an interval."""
+        """Return the finite force readings of an index range."""
         force = self.turned * self.force[part]
         return force[np.isfinite(force)]
 
     def is_below(self, part: slice) -> bool:
-        """Return whether all readings of an interval are below zero."""
+        """Return whether all force readings of an index range are below zero."""
         return bool(np.nanmax(self.turned * self.force[part]) < 0)
 
     def alike(self, number: int) -> bool:
@@ -99,7 +99,7 @@ class ForceTrace(NamedTuple):
         return bool(slow >= (1 - limits.MAX_SPEED_DIFFERENCE_OF_REVERSAL.value) * fast)
 
     def between(self, number: int) -> np.ndarray:
-        """Return the finite readings under load from a segment to the next."""
+        """Return the finite readings under load between a segment and the next."""
         gap = slice(self.parts[number].stop, self.parts[number + 1].start)
         force = self.turned * self.force[gap][self.loaded.within(gap)]
         return force[np.isfinite(force)]
@@ -203,7 +203,7 @@ def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
 
 
 def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
-    """Return shares of turns (dip, below, straight, clearly straight), and the number of turns.
+    """Return the shares of turns that dip, go below, or are (clearly) straight, and their number.
 
     "Dip" and "below" are readings far below both levels. A turn is "straight" if it has readings
     between the two levels, beyond their noise, and none below them; if the levels overlap, at least
@@ -267,7 +267,7 @@ def _decide_one_way(trace: ForceTrace) -> Fold:
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
-    # a start at another speed after a standstill does not reverse
+    # only turns between strokes of equal speed, as a start at another speed is no reversal
     turns = (i for i in range(len(trace.parts) - 1) if trace.alike(i))
     stops = (_touches_zero(trace, i) for i in turns)
     touched = [touches for touches in stops if touches is not None]
@@ -293,6 +293,6 @@ def _touches_zero(trace: ForceTrace, number: int) -> bool | None:
     lowest = int(np.argmin(turn))
     # a V has three large steps among the four around its minimum, a flat stop at most two
     steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
-    # differences between neighbours: slow waves in the stroke are not noise
+    # noise from differences between neighbours, which slow waves do not affect
     noise = median(np.abs(np.diff(stroke))) / 0.954
     return bool(turn[lowest] < max(limits.MAX_ERRORS_OF_TOUCH.value * noise, steps[1]))

@@ -277,7 +277,7 @@ def _doubt_asymmetry(
 
 
 def _outside_zero(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroReference:
-    """Return the zero from outside the run: stated, from other runs, or none."""
+    """Return the zero that is known from outside the run: stated, of other runs, or none."""
     if np.isfinite(known.stated):
         words = f"stated: zero within {known.stated:.3g}{strokes.unit}"
         if known.read_from:

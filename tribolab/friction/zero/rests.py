@@ -23,7 +23,7 @@ class Zeros(NamedTuple):
     error: np.ndarray
 
     def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the zero and its standard error at other times [s].
+        """Return the zero and its standard error at given times [s].
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class Zeros(NamedTuple):
         return value, np.sqrt(noise + moved * u * (1 - u) / 3)
 
     def slope(self, time: np.ndarray) -> np.ndarray:
-        """Return the drift between the rests around other times [u/s]; 0 beyond them."""
+        """Return the drift of the zero at given times [u/s]; 0 before and after all rests."""
         after = np.searchsorted(self.time, time)
         inside = (after > 0) & (after < self.time.size)
         last = after.clip(1, max(self.time.size - 1, 1)) * inside
@@ -66,7 +66,7 @@ class Zeros(NamedTuple):
         return np.where(inside, (self.value[last] - self.value[first]) / apart, 0.0)
 
     def around(self, time: np.ndarray) -> np.ndarray:
-        """Return a mask of the times between two rests."""
+        """Return a mask of the times that lie between two rests."""
         return (time > self.time[0]) & (time < self.time[-1])
 
 
@@ -113,7 +113,7 @@ def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
     levels = _unloaded(time, normal, intervals, load)
     if not levels:  # unloaded motion also shows the zero: idling includes the zero of a torque
         levels = _unloaded(time, normal, _limits(segments, "no load"), load)
-    if not levels:  # a speed that is only noise, or recorded without sign, may also be a rest
+    if not levels:  # a rest may look like motion if its speed is noise or was recorded without sign
         levels = _unloaded_parts(time, normal, _limits(segments), load)
     levels, partial = _without_partial(time, normal, levels, load, run, segments)
     signals = [normal] if friction is None else [normal, friction]
@@ -162,7 +162,7 @@ def _zero_drifts(
     reads: np.ndarray,
     segments: xr.Dataset,
 ) -> bool:
-    """Return whether the load of the strokes drifts with the readings at rest, as a zero does."""
+    """Return whether the load drifts alike at rest and in strokes, so that its zero drifts."""
     at = np.array([float(time[level].mean()) for level in levels])
     ends = (segments[f"trimmed_{end}"].values for end in ("start", "stop"))
     first, last = (np.searchsorted(time, end) for end in ends)
@@ -172,7 +172,7 @@ def _zero_drifts(
     loads = np.array([np.mean(normal[a:b]) for a, b in zip(first[fine], last[fine], strict=True)])
     middle = (time[first[fine]] + time[last[fine] - 1]) / 2
     if loads.max() > limits.LOADS_DIFFER.value * loads.min():
-        return True  # with several loads a drift cannot be detected
+        return True  # with several loads a drift cannot be excluded
     zero = np.interp(middle, at, reads)
     # scatter of the loads minus the zero at the rests
     return bool(np.std(loads - zero) < limits.DRIFT_IN_STROKES.value * np.std(loads))
@@ -217,14 +217,14 @@ def light_rest(
 def _rest_limits(
     run: xr.Dataset, segments: xr.Dataset, load: float
 ) -> tuple[np.ndarray, np.ndarray, list[tuple[float, float]]] | None:
-    """Return time, normal force, and the limits of the rests [s]; None without a load signal."""
+    """Return time, normal force, and start and end of rests [s]; None without a load signal."""
     if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
         return None
     return run["time"].values, run["normal_force"].values, _limits(segments, "at rest")
 
 
 def _limits(segments: xr.Dataset, reason: str = "") -> list[tuple[float, float]]:
-    """Return the limits [s] of the intervals omitted for a given reason, or for any."""
+    """Return start and end times of the intervals omitted for a given reason, or for any."""
     reasons = segments["omitted_reason"].values
     chosen = reasons == reason if reason else np.ones(reasons.size, bool)
     starts, stops = (segments[name].values[chosen] for name in ("omitted_start", "omitted_stop"))
@@ -234,7 +234,7 @@ def _limits(segments: xr.Dataset, reason: str = "") -> list[tuple[float, float]]
 def _unloaded(
     time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
-    """Return the unloaded samples of each interval."""
+    """Return the indices of the unloaded samples of each interval."""
     before, levels = 0.0, []
     for start, stop in intervals:
         first, last = np.searchsorted(time, [start, stop])

@@ -1,4 +1,4 @@
-"""Loops of strokes at different speeds, and the change of friction between them."""
+"""Error of friction loops whose two strokes differ in speed."""
 
 from __future__ import annotations
 

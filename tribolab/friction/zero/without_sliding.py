@@ -81,7 +81,7 @@ def _before_sliding(
 def _without_load(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None, load: float
 ) -> tuple[float, float]:
-    """Return half the loop of unloaded strokes; for one direction, the excess over rests."""
+    """Return half the loop of unloaded strokes; with one direction, their excess over rests."""
     if "sliding_velocity" not in run:
         return float("nan"), float("nan")
     found: list[tuple[float, float, float, float]] = []  # direction, mean, its error, mean time
@@ -109,7 +109,7 @@ def _without_load(
 
 
 class LoadedAndIdle(NamedTuple):
-    """Errors of friction [N] due to tilt and drag below their limits, with doubts."""
+    """Error of friction [N] due to tilt and drag if these are small, else doubts."""
 
     error: float
     doubts: tuple[Doubt, ...]

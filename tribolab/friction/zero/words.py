@@ -62,7 +62,7 @@ def of_speeds(
         f"If friction hardly changes between them, say `pair_tolerance = {wanted:.1f}` under "
         "[friction]; else measure both directions at one speed, or a rest without load."
     )
-    # measured change with speed is included in the error; otherwise it is assumed
+    # if the change with speed was measured, the error includes it; else it is an assumption
     status = "pass" if measured else "suspect"
     return [doubt(text, cure, np.flatnonzero(np.isin(strokes.pair, np.flatnonzero(far))), status)]
 

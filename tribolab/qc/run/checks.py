@@ -150,7 +150,7 @@ def _flags_on(
 
 
 def _objections(flags: np.ndarray) -> np.ndarray:
-    """Return flags in which good samples are replaced by "not evaluated"."""
+    """Return flags with "good" replaced by "not evaluated", so that only objections remain."""
     good = flags == GOOD
     if good.all():
         return uniform(flags.shape, NOT_EVALUATED)
@@ -158,7 +158,7 @@ def _objections(flags: np.ndarray) -> np.ndarray:
 
 
 def _flag_unexamined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
-    """Return results with an objection if no check, except that of segments, examined anything."""
+    """Return the results, with an objection if no check other than "segments" could examine."""
     others = [result for name, rows in results.items() if name != _SEGMENTS for result in rows]
     own = results.get(_SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):

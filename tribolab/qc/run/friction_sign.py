@@ -19,7 +19,7 @@ from tribolab.qc.run.subject import RunSubject
 def _reversed_slip(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     """Report stick-slip that rises fast and falls slowly: the sign of the sensor is reversed."""
     kind = subject.slip["waveform"].values
-    # friction may also fall slowly along a track, but not periodically
+    # friction may fall slowly along a track, too, but not periodically
     reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == SLIP_KINDS[0])
     reversed_ &= ~_follows_load(subject, limits["of_load"])
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
@@ -90,10 +90,10 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> str:
-    """Return the remedy for a wrong sign, which is to reverse it only if nothing else can be wrong.
+    """Return the remedy for a wrong sign: reverse it, unless there may be another cause.
 
-    This needs all clear strokes to be reversed, in both directions, and a loop centred on zero:
-    an offset larger than friction reverses strokes as well.
+    Reversal is the remedy if all clear strokes are reversed, in both directions, and the loop is
+    centred on zero: an offset larger than friction reverses strokes as well.
     """
     friction = subject.friction
     direction = friction["direction"].values

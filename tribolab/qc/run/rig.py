@@ -69,7 +69,7 @@ def _load_moves(
     if not known.size:
         return []
     if known.max() > limits["programme"] * known.min():
-        return _steps_without_friction(subject, loads, limits)  # the set-point has steps
+        return _steps_without_friction(subject, loads, limits)  # the load was changed on purpose
     signal = subject.signals["normal_force"]
     first, last = parts[0], parts[-1]
     tenth = max((last.stop - last.start) // 10, 1), max((first.stop - first.start) // 10, 1)
@@ -127,7 +127,7 @@ _READING_STEPS = (
     "Check that the load cell and its amplifier kept their range, or state the load of each step "
     "(set_normal_force)."
 )
-_CLEAR = 5.0  # change of the load in standard errors that counts as clear
+_CLEAR = 5.0  # standard errors by which the load must change to be reported
 
 
 def _normal_force_scatter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -63,7 +63,7 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _drop_rests(subject: RunSubject, values: np.ndarray, flags: np.ndarray) -> np.ndarray:
-    """Return flags without those at zeros outside segments, where an unloaded sensor reads 0."""
+    """Return flags without those on zeros outside segments: an unloaded sensor reads 0 there."""
     if not (subject.sliding and (flags == SUSPECT).any()):
         return flags
     return np.where((values == 0) & ~subject.segment_mask, np.int8(GOOD), flags)

@@ -85,7 +85,7 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 
 
 def _add_largest_change(results: list[Result], change: np.ndarray) -> list[Result]:
-    """Return results that state the largest measured change if no trend is significant."""
+    """Add the largest measured change to the message if no trend is significant."""
     if results[0].status != "pass" or results[0].value != 0.0:
         return results
     text = (

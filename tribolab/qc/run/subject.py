@@ -158,7 +158,7 @@ class RunSubject:
         return inside
 
     def typical_size(self, name: str) -> float:
-        """Return the median magnitude of a signal in the segments; without any, of all samples."""
+        """Return a signal's median magnitude in the segments; without any, in the whole run."""
         values = self.signals[name]
         inside = self.segment_mask if self.segment_mask.any() else np.ones(values.size, dtype=bool)
 
@@ -198,7 +198,7 @@ class RunSubject:
         return np.full(size, float(self.run.attrs.get("set_normal_force_N", np.nan)))
 
     def segment_means(self, name: str) -> np.ndarray:
-        """Return the mean of a signal in each trimmed segment; the check is skipped without it."""
+        """Return the mean of a signal in each trimmed segment; skip the check without it."""
         if name not in self.signals:
             raise Skip(f"{name} was not recorded")
         return np.array([_mean(self.signals[name][part]) for part in one_by_one(self.slices)])
@@ -254,9 +254,9 @@ class RunSubject:
         return float(self.segments["sliding_speed"].values[number])
 
     def segment_label(self, number: int) -> str:
-        """Return a segment as text: its number as in tables, speed, direction, time."""
+        """Return a label of a segment: its number in tables, speed, direction and start time."""
         speed, start = self.speed_of(number), float(self.segments["start"].values[number])
-        own = int(self.segments["segment"].values[number])  # numbering includes rejected segments
+        own = int(self.segments["segment"].values[number])  # rejected segments are numbered, too
         arrow = {1: "forward", -1: "backward"}.get(int(self.segments["direction"][number]), "")
         how = f"{speed_text(speed)} {arrow}".strip()
         return f"segment {own + 1} ({how}, from t = {number_text(start, 4)} s)"

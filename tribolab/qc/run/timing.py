@@ -167,7 +167,7 @@ def _interval_change(time: np.ndarray) -> np.ndarray:
 
 
 def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
-    """Return the sample at which the sampling rate changes permanently; None without a change.
+    """Return the index of the sample at which the sampling rate changes; None without a change.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     least = _fastest_interval(interval, factor) or _uneven_interval(interval, factor)
     if not least:
         return None
-    # split that separates the logarithms of the intervals best into two levels
+    # find the split into two levels with the least scatter of the logarithms
     level = np.log(np.maximum(interval, 1e-3 * least))
     count = np.arange(1, level.size)
     total = np.cumsum(level)
@@ -204,7 +204,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
 
 
 def _fastest_interval(interval: np.ndarray, factor: float) -> float:
-    """Return the smallest mean interval of parts with equal row counts; 0 if they are similar."""
+    """Return the smallest mean interval among parts with equal row counts; 0 if all are similar."""
     parts = min(_PARTS, interval.size // 8)
     if parts < 2:
         return 0.0
@@ -224,7 +224,7 @@ def _uneven_interval(interval: np.ndarray, factor: float) -> float:
 
 
 def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np.ndarray:
-    """Return the samples at which the sampling rate changes, each rate lasting some samples.
+    """Return the indices of samples at which the sampling rate changes for some time.
 
     Parameters
     ----------

@@ -12,7 +12,8 @@ from tribolab.arrays.medians import median, medians_of_rows
 from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 
 _BLOCKS = {1: 20, 2: 4}  # blocks of the baseline along each axis, for profiles (1) and maps (2)
-_WIDEST = {1: 0.04, 2: 0.2}  # share of all points; wider features are form, such as a chamfer
+# features that cover a larger share of all points are form, such as a chamfer
+_WIDEST = {1: 0.04, 2: 0.2}
 _STUCK_BLOCKS = 50  # number of blocks of a profile in which a stuck stylus is searched
 _MIN_IN_BLOCK = 16
 # half widths of the band of heights at a noisy stop, relative to the roughness of the blocks
@@ -90,7 +91,8 @@ def _baseline(height: np.ndarray) -> np.ndarray:
         blocks = parted.reshape(counts[0] * counts[1], -1)
     middles = medians_of_rows(blocks).reshape(counts)
     for axis, (points, size, count) in enumerate(zip(height.shape, sizes, counts, strict=True)):
-        places = (np.arange(points) + 0.5) / size - 0.5  # in blocks, from the first one's centre
+        # positions in units of blocks, from the centre of the first block
+        places = (np.arange(points) + 0.5) / size - 0.5
         left = np.clip(places.astype(int), 0, count - 2)
         share = np.clip(places - left, 0.0, 1.0)
         share = share if axis == height.ndim - 1 else share[:, None]
@@ -151,7 +153,7 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
 
 
 def _line_scatter(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the scatter of rows about straight lines, and the white-noise part of it."""
+    """Return each row's scatter about a straight line, and its white-noise part."""
     x = np.linspace(-1.0, 1.0, rows.shape[1])
     rest = rows - rows.mean(axis=1, keepdims=True)
     rest = rest - np.outer(rest @ x / (x @ x), x)
@@ -167,7 +169,7 @@ def _is_white(spread: np.ndarray, noise: np.ndarray) -> np.ndarray:
 
 
 def _widen(height: np.ndarray, first: int, last: int, near: float) -> tuple[int, int]:
-    """Return an interval extended in both directions as far as its straight line continues."""
+    """Return an interval, extended to both sides as far as the heights continue its line."""
     x = np.arange(height.size, dtype=float)
     slope, level = np.polyfit(x[first:last], height[first:last], 1)
     away = np.abs(height - level - slope * x) > near

@@ -19,7 +19,7 @@ from tribolab.qc.scan.subject import ScanSubject
 def _flag_result(
     subject: ScanSubject, flags: np.ndarray, text: str, fail_share: float
 ) -> list[Result]:
-    """Return a result from flags (row, x): number of points, place and severity."""
+    """Return the result of a check from its flags (row, x): severity, points and place."""
     bad = np.isin(flags, (SUSPECT, FAIL))
     count = int(bad.sum())
     share = count / flags.size
@@ -73,7 +73,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     )
     text += f"; {cropped}" if cropped else ""
     whole = float(subject.x[-1] - subject.x[0])
-    # a map is also known in the rows next to a gap, a profile is not
+    # a gap in a map has measured rows next to it, a gap in a profile has not
     far = not subject.is_map and span > limits["stretch"] * whole
     status = "pass"
     if share > limits["suspect"] or longest > limits["in_a_row"] or far:

@@ -1,4 +1,4 @@
-"""Checks on the metadata of a scan: pitch, length, and the roughness found by the instrument."""
+"""Checks on stated values of a scan: pitch, length, and the instrument's own roughness."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def _implausible_size(subject: ScanSubject, limits: Mapping[str, float]) -> Resu
 
 
 def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], float]]:
-    """Return the instrument's roughness values: source, values [m], and cut-off [m] or NaN."""
+    """Return roughness values of the instrument: source, values [m], cut-off [m] (NaN: unknown)."""
     sets = []
     for number, result in enumerate(subject.results, start=1):
         values = {n: float(result[n]) for n in _COMPARED if n in result}

@@ -15,8 +15,8 @@ from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.qc.scan.artefacts import longest_run, noisy_stop, rounding_step
 from tribolab.surface.roughness import roughness_parameters
 
-_MOVED = 0.02  # share of changed points above which changes are not rare jumps
-_BLOCK = 512  # number of points whose slopes are compared
+_MOVED = 0.02  # if a larger share of neighbours differ, differences are not rare jumps
+_BLOCK = 512  # points in a block; jumps are compared with the slopes in their block
 
 
 def end_points(marked: np.ndarray) -> np.ndarray:
@@ -228,17 +228,12 @@ def odd_one_out(
 
 
 def cost_of_gaps(profile: xr.Dataset | None) -> str:
-    """Return the uncertainty of a profile's Rq due to missing heights, as text.
+    """Return the uncertainty of Rq due to missing heights as text; "" without roughness.
 
     Parameters
     ----------
     profile
         ``height`` [m] (x) with filled heights marked; None if it has too few heights.
-
-    Returns
-    -------
-    str
-        Empty if the profile has no roughness.
     """
     if profile is None:
         return ""

@@ -129,7 +129,7 @@ def _repeats(
 
 
 def _add_repeats(findings: Findings, repeats: Result) -> Findings:
-    """Return the findings of a single scan, including the result for the repeats."""
+    """Return the findings of a scan with the result of the check "repeats" replaced."""
     rows = tuple(
         (check, repeats if check.name == _REPEATS else result) for check, result in findings.results
     )

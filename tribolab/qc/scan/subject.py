@@ -1,4 +1,4 @@
-"""Scans that are checked, with quantities that several checks need."""
+"""Scans to be checked, with quantities that several checks need."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class ScanSubject:
         return [f"{kind} {number}" for number in range(1, len(self.rows) + 1)]
 
     def attribute_values(self, key: str) -> list[float]:
-        """Return the values of an attribute: one for each row, one for all rows, or none."""
+        """Return the values of an attribute: one per row, a common one, or none."""
         value = self.scans.attrs.get(key)
         if isinstance(value, str):
             parts = [part.strip() for part in value.split(";")]
@@ -67,7 +67,7 @@ class ScanSubject:
         return [] if value is None else [float(value)]
 
     def place(self, row: int, first: int, last: int) -> str:
-        """Return an interval of a row as text."""
+        """Return a text that names a row and an interval of x in it."""
         text = f"{self.names[row]}, x = {self.x[first] * 1e3:.6g} mm"
         return text if last <= first else f"{text} to {self.x[last] * 1e3:.6g} mm"
 
@@ -96,13 +96,13 @@ class ScanSubject:
         return [fill_dropouts(profile) for profile in profiles]
 
     def profile_of(self, row: int) -> xr.Dataset | None:
-        """Return one row without form, filled heights marked; None if too few heights are known."""
+        """Return a row without form, with filled heights marked; None with too few heights."""
         _, profiles = self.form
         return profiles[self.usable.index(row)] if row in self.usable else None
 
     @cached_property
     def form(self) -> tuple[str, list[xr.Dataset]]:
-        """Profiles without form, and the removed form: a circle, or a line if none fits."""
+        """Name of the removed form (circle, or tilt if no circle fits), and profiles without it."""
         if "form_removed" in self.scans.attrs:
             return "none", self.filled_profiles
         try:
@@ -112,7 +112,7 @@ class ScanSubject:
 
     @cached_property
     def level(self) -> list[int]:
-        """Positions, among the usable rows, of those without roughness."""
+        """Indices, among the usable rows, of the rows without roughness."""
         _, profiles = self.form
         flat = [level_rows(profile.height.values[None])[0] for profile in profiles]
         return np.flatnonzero(flat).tolist()
@@ -138,7 +138,7 @@ class ScanSubject:
 
     @cached_property
     def wave(self) -> tuple[float, float]:
-        """Share of the mean square height in a periodic wave, and its wavelength [m]; else 0."""
+        """Share of a periodic wave in the mean square height, and its wavelength [m]; 0 if none."""
         if self.is_map:
             return 0.0, float("nan")
         _, profiles = self.form

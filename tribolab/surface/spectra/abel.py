@@ -93,7 +93,7 @@ class Annuli:
 
 
 def power_laws_between(wavenumber: ArrayLike, psd_1d: ArrayLike) -> PowerLaws:
-    """Return power laws that connect the nodes of a two-sided C_1D [m3]."""
+    """Return a two-sided C_1D [m3], given at nodes, as power laws between them."""
     k, c = np.asarray(wavenumber, dtype=float), np.asarray(psd_1d, dtype=float)
     slope = np.diff(np.log(c)) / np.diff(np.log(k))
     return PowerLaws(k, 2 * bin_integrals(k, c, 0), slope)
@@ -169,7 +169,7 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
 
 def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
-    """Return each bin's contribution to M(q) (at, bin); the first includes the plateau below."""
+    """Return each bin's share of M(q) (at, bin); that of the first includes the plateau below."""
     left = np.concatenate([[0.0], profile.edges[:-1]])
     right, level = profile.edges, np.append(profile.level[:1], profile.level)
     slope = np.append(0.0, profile.slope)
@@ -199,7 +199,8 @@ def _tail(
         # imported late: scipy loads slowly
         from scipy.special import beta, betainc
 
-        a, ratio = 0.5 * (s - 1), np.maximum(at / end, 1e-4)  # M is constant to 1e-8 below this
+        # at smaller ratios M is constant to 1e-8
+        a, ratio = 0.5 * (s - 1), np.maximum(at / end, 1e-4)
         scale = level * end * ratio ** (1 - s) * beta(a, 0.5)
         return scale * betainc(a, 0.5, np.minimum(ratio, 1.0) ** 2)
 

@@ -1,4 +1,4 @@
-"""Annuli of the wavenumber plane: merging of uncertain ones, and reduction to nodes."""
+"""Annuli of the wavenumber plane: merging of uncertain annuli, and conversion to nodes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.surface.spectra.smooth_law import FittedLaw, smooth
 _CONFIDENCE = 0.95
 _LARGEST_ERROR = 0.25  # relative standard error below which an annulus is not merged further
 _TAIL_DECADES = 0.5
-_PLATEAU = 3.0  # ratio of edges above which the first annulus must be the result of a merge
+_PLATEAU = 3.0  # if the ratio of its edges is larger, the first annulus results from a merge
 
 
 def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -177,7 +177,7 @@ def _mean_square(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
 def _balance_power(
     edges: np.ndarray, q: np.ndarray, c: np.ndarray, error: np.ndarray, whole: float
 ) -> np.ndarray:
-    """Adjust C at the nodes, weighted by their errors, to conserve the mean square height [m2].
+    """Return C at the nodes, changed within its errors to conserve the mean square height [m2].
 
     With factors ``exp(s error^2)``: the smallest change in units of the standard errors.
     """

@@ -48,7 +48,7 @@ def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 def _multiplicity(count: int, size: int) -> np.ndarray:
-    """Return the number of Fourier lines that each of the `count` lines of an axis represents."""
+    """Return how many Fourier lines each line of an axis represents: 2, with its mirror, or 1."""
     number = np.full(count, 2.0)
     number[0] = 1.0
     if size % 2 == 0:
@@ -113,7 +113,7 @@ def psd_2d_of_map(
     scale = steps[0] * steps[1] / (4 * np.pi**2 * size[0] * size[1])
     ky, kx = (2 * np.pi * np.fft.rfftfreq(n, d) for n, d in zip(size, steps, strict=True))
     q = np.hypot(ky[:, None], kx)
-    # the quadrant holds the sums of +ky and -ky; +kx and -kx have equal power
+    # the quadrant contains sums over +ky and -ky; +kx and -kx have equal power
     along_y, along_x = (_multiplicity(k.size, n) for k, n in zip((ky, kx), size, strict=True))
     spacing = max(2 * np.pi / (n * d) for n, d in zip(size, steps, strict=True))
     waves = int(min(np.pi / d for d in steps) / spacing)

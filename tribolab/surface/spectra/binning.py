@@ -40,7 +40,7 @@ class Bins:
 
 
 def log_bins(lines: int, lowest: int, per_decade: float, at_least: int = 4) -> Bins:
-    """Return bins of equal logarithmic width for the Fourier lines 1 ... `lines`.
+    """Return bins of equal width in ln(k) for the Fourier lines 1 to `lines`.
 
     Parameters
     ----------

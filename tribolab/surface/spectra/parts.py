@@ -33,7 +33,7 @@ class Transform(NamedTuple):
         return binned_power(rows, taper, self.bins, self.length, self.workers).bins
 
     def first(self, points: int) -> int:
-        """Return the first bin whose waves are short compared with a part of `points` points."""
+        """Return the index of the first bin whose waves are short compared with `points` points."""
         lowest = (self.order + 2) * self.length / points
         return int(np.searchsorted(self.bins.starts, lowest))
 

@@ -1,4 +1,4 @@
-"""Smooth spectrum fitted to a measured one, as the reference for its scatter."""
+"""Smooth spectrum fitted to a measured one, from which scatter is judged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class FittedLaw(NamedTuple):
     covariance: np.ndarray
 
     def spread(self, quantity: Callable[[SelfAffine], np.ndarray]) -> np.ndarray:
-        """Return the standard error of a quantity computed from the fitted law."""
+        """Return the standard error of a quantity that is computed from the fitted law."""
         steps = []
         for name, scale in (("rolloff", self.law.rolloff), ("hurst", 1.0)):
             at = getattr(self.law, name)

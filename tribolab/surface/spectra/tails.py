@@ -16,7 +16,7 @@ _POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}
 
 
 class Tails(NamedTuple):
-    """Rsk or Rku of profiles (row), and its standard error due to gaps."""
+    """Rsk or Rku of each profile (row), and its standard error due to gaps (row)."""
 
     value: np.ndarray
     error: np.ndarray

@@ -1,4 +1,4 @@
-"""Background of a spectrum: red noise on white noise, and power above it."""
+"""Background of a spectrum (red plus white noise), and significance of power above it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from scipy import special
 from tribolab.friction.oscillation import limits
 
 _CORNER_FREQUENCIES = 24  # number of trial corner frequencies
-# power of the white noise over that of the red noise at zero frequency
+# trial ratios of the power of white noise to that of red noise at zero frequency
 _WHITE_SHARES = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 25)])
 _LEVEL_SHIFTS = np.linspace(-1.2, 1.2, 17)  # trial shifts of the level (natural log)
 _COST_MARGIN = 1e-3  # tolerance of the cost, far above the rounding errors of single precision
 
 
 def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> np.ndarray:
-    """Fit an AR(1) process plus white noise to a spectrum, ignoring peaks.
+    """Fit red noise (an AR(1) process) plus white noise to a spectrum, ignoring peaks.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
 
 
 def _best_model(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
-    """Return the model (model, band) and the shift of its level with the least cost."""
+    """Return the background model that fits best, and the shift of its level."""
     roughly, off = rest.astype(np.float32), np.empty(rest.shape, np.float32)
     cost = np.stack(
         [_cost(roughly, np.float32(s), weight.astype(np.float32), off) for s in _LEVEL_SHIFTS]

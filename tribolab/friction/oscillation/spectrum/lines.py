@@ -14,7 +14,7 @@ LONGEST_TRANSFORM = 1 << 18  # samples of one transform; more are not needed for
 
 
 class Line(NamedTuple):
-    """Spectral line: frequency [Hz], amplitude in the signal's unit, power over the background.
+    """Spectral line: frequency [Hz], amplitude, and ratio of its power to the background.
 
     If found in a segment, also the segment's number and sliding speed [m/s], and whether it is
     mains hum.
@@ -31,7 +31,7 @@ class Line(NamedTuple):
 def segment_lines(
     time: np.ndarray, values: np.ndarray, segment: int, speed: float
 ) -> list[Line] | None:
-    """Find the lines of one segment of a run; None if it is too short or sampled too slowly.
+    """Return the spectral lines of a segment; None if it is too short or sampled too slowly.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
 
 
 def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> list[Line]:
-    """Return the lines of an interval that noise does not explain.
+    """Return the spectral lines of an interval of a signal, except those that may be noise.
 
     Parameters
     ----------

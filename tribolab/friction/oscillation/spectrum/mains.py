@@ -34,7 +34,7 @@ def _peak_frequency(frequency: np.ndarray, amplitude: np.ndarray, at: int) -> fl
 
 
 def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
-    """Return the mains lines of a record that is sampled fast and evenly enough.
+    """Return the mains lines of a record; none if it is sampled too slowly or unevenly.
 
     Notes
     -----

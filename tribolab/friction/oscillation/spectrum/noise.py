@@ -6,7 +6,7 @@ import numpy as np
 
 from tribolab.arrays.medians import median_in_pieces
 
-_SAMPLED_VALUES = 200_000  # values sufficient to find the quantisation step
+_SAMPLED_VALUES = 200_000  # this many values suffice to find the quantisation step
 
 
 def quantisation_step(values: np.ndarray) -> float:

@@ -1,4 +1,4 @@
-"""Power spectrum of a record: one transform if short, averaged if long; even or uneven."""
+"""Power spectrum of an evenly or unevenly sampled record; averaged if the record is long."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MIN_WINDOW = 1 << 13  # fewest samples of the intervals whose spectra are avera
 # most intervals that are averaged, evenly spaced: the spectrum is accurate to 5 %
 _MAX_WINDOWS = 384
 _BATCH_SAMPLES = 1 << 18  # samples processed at a time: they fit into the cache
-_HANN_WIDTH = 1.5  # bins that a line covers
+_HANN_WIDTH = 1.5  # number of bins that a line covers
 
 
 class Spectrum(NamedTuple):
@@ -88,7 +88,7 @@ def coarsened(record: EvenRecord, size: int) -> EvenRecord:
 
 
 def spectrum(record: EvenRecord) -> Spectrum:
-    """Return the one-sided power spectrum of a record, its straight line removed.
+    """Return the one-sided power spectrum of a record minus its least-squares line.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def _own_spacing(record: EvenRecord) -> float:
 
 
 def bands(spectrum: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarray, ...]:
-    """Return a spectrum averaged over bands of equal relative width, of at least one bin each.
+    """Return a spectrum averaged over bands of equal relative width (at least one bin wide).
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, Spectrum,
 
 
 class Survey(NamedTuple):
-    """Spectrum with its fitted noise.
+    """Spectrum of a record in bins and bands, with the fitted noise.
 
     Parameters
     ----------

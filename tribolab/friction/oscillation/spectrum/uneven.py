@@ -42,7 +42,7 @@ def fourier_sums(time: np.ndarray, values: np.ndarray, step: float, count: int) 
     True
     """
     size = fft.next_fast_len(4 * max(count, 8), real=True)
-    place = ((time - time[0]) * step % 1.0) * size  # grid points in the lowest period
+    place = ((time - time[0]) * step % 1.0) * size  # in grid points, modulo the longest period
     nearest = np.floor(place).astype(np.int64)
     width = 2 * _SPREAD_POINTS / (3 * np.pi)  # variance of the Gaussian for an oversampling of two
     grid = np.zeros(size)
