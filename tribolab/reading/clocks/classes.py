@@ -27,8 +27,7 @@ from tribolab.reading.clocks import limits
 _GRID_CELLS = 1 << 14  # cells into which the longer log is divided
 _CLASSES_PER_DECADE = 3  # velocity classes per decade of speed
 _MAX_RIVALS = 8  # most rival shifts
-# tolerance for rounding at the edge of a cell, as a share of its width
-_CELL_EDGE = 1e-6
+_CELL_EDGE = 1e-6  # tolerance for rounding at the edge of a cell, as a share of its width
 _CHANGES_PER_CLASS = 12  # ratio of changes to classes above which the FFT is used
 
 

@@ -17,8 +17,7 @@ from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
 from tribolab.reading.clocks import limits
 
-# samples per block, to save memory
-_BLOCK_SAMPLES = 1 << 18
+_BLOCK_SAMPLES = 1 << 18  # samples per block, to save memory
 
 _COUNTER_TICKS = [10.0**k for k in range(-9, 1)]
 # ranges of counters [s]: 2^bits clock ticks, half a day, a day; a fall by one is a wrap

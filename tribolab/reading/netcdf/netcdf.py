@@ -93,7 +93,7 @@ def write_groups(groups: Mapping[str | None, xr.Dataset], path: str | Path) -> P
     groups
         Dataset by name of the group; None is the root.
     path
-        The file; an existing one is replaced.
+        File to write; an existing one is replaced.
 
     Raises
     ------

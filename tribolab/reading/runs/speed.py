@@ -222,9 +222,8 @@ def _by_strokes_of_steps(
         columns["set_speed"] = mean_speed
         return
     for first, last, frequency in without:
-        if (
-            time[last] - time[first]
-        ) * frequency >= FEWEST_CYCLES:  # a shorter step may show no reversal
+        # a shorter step may show no reversal
+        if (time[last] - time[first]) * frequency >= FEWEST_CYCLES:
             raise ReadError(
                 f"the friction from {time[first]:.4g} to {time[last]:.4g} s does not turn over "
                 f"with the {frequency:.4g} Hz that are stated for it",

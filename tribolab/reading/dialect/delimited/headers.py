@@ -96,9 +96,8 @@ def parted_as_numbers(
     if fits or any(column.position is None for column in dialect.column):
         return names, units
     joined: list[str] = []
-    marked = len(names) > width and not any(
-        map(str.isalnum, names[0])
-    )  # names as in "# t [s] x [mm]"
+    # the header may begin with a comment mark: "# t [s] x [mm]"
+    marked = len(names) > width and not any(map(str.isalnum, names[0]))
     for name in names[marked:]:
         if joined and name[:1] in "([":
             joined[-1] += f" {name}"
