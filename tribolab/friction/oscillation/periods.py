@@ -104,7 +104,7 @@ def period_verdict(
         at_odds(oscillation, seen),
         oscillation.false_alarm < limits.BAND_BY_CHANCE.value,
     )
-    # if two frequencies beat, periods scatter although lines exist
+    # two frequencies that beat make periods scatter, although both are lines in the spectrum
     several = (
         len(lines) > 1 and lines[1].swing > limits.MIN_SWING_OF_SECOND_LINE.value * lines[0].swing
     )

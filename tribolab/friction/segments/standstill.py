@@ -67,7 +67,7 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
 
 
 def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> int:
-    """Return the block length, in samples, that resolves the speed by the position; 0 if none."""
+    """Return how many samples of the position resolve the speed; 0 if no block length does."""
     if stretch.kind != "constant" or not stretch.velocity:
         return 0
     for parts in _BLOCK_COUNTS:

@@ -19,7 +19,7 @@ from tribolab.friction.segments.pieces import ConstancyLimits, VelocityPiece, mo
 from tribolab.friction.segments.turns import strokes_within
 from tribolab.friction.time_weights import without_gaps
 
-_INTERVALS_OF_GAP = 4  # sampling intervals on each side of a pause, with which it is compared
+_INTERVALS_OF_GAP = 4  # a pause is compared with this many sampling intervals on each side
 
 
 class Stretch(NamedTuple):

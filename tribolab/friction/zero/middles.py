@@ -98,7 +98,7 @@ def middles(
 
 
 class StrokeSums(NamedTuple):
-    """Strokes and their weights whose weighted sum is each force minus its zero (segment, term)."""
+    """Each force minus its zero as a weighted sum over strokes: strokes, weights (segment, term)."""
 
     stroke: np.ndarray
     weight: np.ndarray

@@ -169,7 +169,7 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
 
 def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
-    """Return each bin's share of M(q) (at, bin); that of the first includes the plateau below."""
+    """Return each bin's share of the variance M(q), that of the plateau in the first (at, bin)."""
     left = np.concatenate([[0.0], profile.edges[:-1]])
     right, level = profile.edges, np.append(profile.level[:1], profile.level)
     slope = np.append(0.0, profile.slope)
