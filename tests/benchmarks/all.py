@@ -73,7 +73,8 @@ def main() -> None:
     parts = [
         "# Benchmarks\n",
         "Written by `python tests/benchmarks/all.py`. Each benchmark runs tribolab and its peer (a "
-        "reference computation) in turn. Times depend on the machine; ratios hardly do.\n",
+        "reference computation) in turn. Ratio: tribolab divided by peer. Times depend on the "
+        "machine; ratios hardly do.\n",
         f"{processor()}; Python {platform.python_version()}; {versions()}\n",
         "| job | tribolab | peer | peer's | ratio | goal |\n|---|---|---|---|---|---|",
     ]

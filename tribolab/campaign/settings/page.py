@@ -191,8 +191,7 @@ def _meaning(known: Quantity) -> str:
         return known.long_name
     if known.bare == "ask":
         return f"{known.long_name}; the unit must state whether it counts cycles or radians"
-    inverse = reciprocal(known.unit)
-    bare = f"1/{inverse.per if inverse else 's'}"
+    bare = f"1/{inverse.per if (inverse := reciprocal(known.unit)) else 's'}"
     counted = "does not count cycles" if known.bare == "nothing" else f"counts {known.bare}"
     return f"{known.long_name}; `{bare}` {counted}"
 
