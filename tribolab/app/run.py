@@ -185,7 +185,7 @@ def run_here_if_lost(
 
 
 def _matches_results(campaign: Campaign, raw: Path, place: Path) -> bool:
-    """Whether patterns of raw files in the campaign file could match files in the results folder."""
+    """Whether patterns of raw files in the campaign could match files in the results folder."""
     depth = len(place.relative_to(raw).parts)
     patterns = [p for entry in campaign.run for p in entry.files]
     patterns += [p for surface in campaign.surface for p in surface.scans or ()]

@@ -159,9 +159,8 @@ def model_sensitivity(
     change = 100 * (uncertainty["friction_coefficient_varied"].values - mu) / mu.max()
     filled = np.nan_to_num(change)
     place = np.argmax(np.abs(filled), axis=-1)[..., None]
-    most = np.take_along_axis(filled, place, axis=-1)[
-        ..., 0
-    ]  # largest change with its sign (variation, end)
+    # largest change over all speeds, with its sign (variation, end)
+    most = np.take_along_axis(filled, place, axis=-1)[..., 0]
     most = np.where(np.isfinite(change).any(axis=-1), most, np.nan)
     order = np.argsort(np.nanmax(np.abs(np.nan_to_num(most)), axis=1))
     for end, colour in enumerate((BLUE, ORANGE)):

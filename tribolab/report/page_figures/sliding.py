@@ -171,11 +171,8 @@ def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
     return f"In a liquid{unnamed}, {wet}. Dry, {dry}."
 
 
-_UNITS_OF_WAY = (
-    ("m", 1e-6, 1e6),
-    ("mm", 1e-3, 1e4),
-    ("µm", 1.0, 0.0),
-)  # unit, units per µm, least µm
+# unit of distance, 1 µm in this unit, and the distance [µm] from which it is used
+_UNITS_OF_WAY = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))
 
 
 def _traces(opened: Sequence[_Opened]) -> FigureSpec:
