@@ -27,9 +27,9 @@ def progress_bars(quiet: bool) -> Iterator[Callable[[str, int, int], None] | Non
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True)) as bars:
         stages = {}
 
-        def tell(stage: str, done: int, total: int) -> None:
+        def update(stage: str, done: int, total: int) -> None:
             if stage not in stages:
                 stages[stage] = bars.add_task(stage, total=total)
             bars.update(stages[stage], completed=done, total=total)
 
-        yield tell
+        yield update

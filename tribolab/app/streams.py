@@ -23,7 +23,7 @@ _PLAIN = str.maketrans(
 )
 _ERRORS = "tribolab_plain"
 _Hook = Callable[["sys.UnraisableHookArgs"], object]
-_AGAIN = 0.01  # s before a signal is sent again; compiled code has returned by then
+_RESEND_DELAY = 0.01  # s before a signal is sent again; compiled code has returned by then
 _UNWRITABLE = 3  # exit code, as for results that cannot be written
 
 
@@ -144,4 +144,4 @@ def _resend(before: _Hook, unraisable: sys.UnraisableHookArgs) -> None:
     send: Callable[[], object] = partial(signal.raise_signal, number)
     if hasattr(signal, "pthread_kill"):  # wakes a waiting thread
         send = partial(signal.pthread_kill, threading.get_ident(), number)
-    threading.Timer(_AGAIN, send).start()
+    threading.Timer(_RESEND_DELAY, send).start()

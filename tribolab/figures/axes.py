@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from tribolab.figures.spec import Axis, Panel, Series
 
-_ROOM = 0.06  # margin at each end of an axis, as share of the range of the data
+_MARGIN = 0.06  # margin at each end of an axis, as share of the range of the data
 _EQUAL_WITHIN = 1e-5  # values are equal if they differ by less: relative, or in decades if log
 _LEAST_DECADES = 0.1  # smallest range of a logarithmic axis, in decades
 _LOW_ENDS = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)  # low ends of log axes, times 10^n
@@ -134,7 +134,7 @@ def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
     elif level and 0 < low < 0.6 * high:
         low = 0.0
     low, high = _widen(low, high, axis.log)
-    room = (high - low) * _ROOM
+    room = (high - low) * _MARGIN
     return Scale(low if low == 0 and not axis.log else low - room, high + room, axis.log)
 
 

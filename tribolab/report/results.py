@@ -91,7 +91,7 @@ def write_report(
     folder, store = Path(outcome.folder), outcome.store
     for name in ("figures", "tables"):
         (folder / name).mkdir(parents=True, exist_ok=True)
-    tell = progress or silent
+    report_progress = progress or silent
 
     curves = [entry.record for entry in store.all("curve", CurveRecord)]
     surfaces = [entry.record for entry in store.all("surface", SurfaceRecord)]
@@ -131,7 +131,7 @@ def write_report(
     live = [*shown_figures(on_screen), *(one for record in records for one in record.figures)]
     tasks = _figures([*curve_specs, *load_figures(known)], subjects, store, figures, pdf)
     drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
-    for record in begun(Figures(store, tasks), executor, tell)():
+    for record in begun(Figures(store, tasks), executor, report_progress)():
         if isinstance(record, Notice):
             findings.append(record)
             continue
@@ -157,7 +157,7 @@ def write_report(
     on_page = document | {"runs": briefs, "review": review_data(outcome.campaign, briefs)}
     write_page(on_page, folder, lambda: _run_documents(outcome), store, live, points)
     store.save()
-    tell("page", 1, 1)
+    report_progress("page", 1, 1)
 
 
 def _figures(

@@ -9,8 +9,8 @@ from tribolab.campaign.store.outcome import Outcome
 from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.runs.run_record import RunRecord
 
-_SLOWEST = 2  # number of speeds per condition
-_APART = 1.2  # ratio of speeds above which they count as different
+_MAX_SPEEDS = 2  # number of speeds per condition
+_MIN_SPEED_RATIO = 1.2  # ratio of speeds above which they count as different
 
 
 class Slow(NamedTuple):
@@ -50,8 +50,8 @@ def slow_segments(curve: CurveOutcome, outcome: Outcome) -> Slow | None:
         ]
         apart: list[tuple[int, float]] = []
         for speed, number in sorted(moving):
-            if speed > 0 and (not apart or speed > _APART * apart[-1][1]):
+            if speed > 0 and (not apart or speed > _MIN_SPEED_RATIO * apart[-1][1]):
                 apart.append((number, speed))
         if apart:
-            return Slow(name, entry.record.outcome.data_file, tuple(apart[:_SLOWEST]))
+            return Slow(name, entry.record.outcome.data_file, tuple(apart[:_MAX_SPEEDS]))
     return None

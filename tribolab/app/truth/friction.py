@@ -58,8 +58,8 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
     Returns
     -------
     TruthComparison
-        A true segment counts as found if one of the same direction covers more than half of it; all
-        segments of a failed run are missed.
+        A true segment counts as found if a measured one of the same direction covers more than half
+        of it. All segments of a failed run count as missed.
 
     Raises
     ------

@@ -18,7 +18,7 @@ _DASHES: dict[Style, str] = {
     "longdash": "10 3",
 }
 _MARKER = 3.6  # half the width of a marker [px]
-_SEEN = 0.3  # largest distance of a line from the original points [px]
+_MAX_DEVIATION = 0.3  # largest distance of a line from the original points [px]
 _LEVELS = 5  # number of colours in a heat map
 _LOW, _HIGH = 0.3, 3.0  # values at the ends of the colour scale, as in `assets/chart.js`
 # number of corners of each marker (0 is a circle), and angle of the first [turns from the top]
@@ -88,7 +88,7 @@ def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
         inner = slice(first + 1, last)
         off = np.abs(dx * (y[inner] - y[first]) - dy * (x[inner] - x[first]))
         off /= math.hypot(dx, dy) or 1.0
-        if off.size and off.max() > _SEEN:
+        if off.size and off.max() > _MAX_DEVIATION:
             middle = first + 1 + int(off.argmax())
             kept.add(middle)
             spans += [(first, middle), (middle, last)]

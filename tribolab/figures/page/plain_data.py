@@ -40,11 +40,11 @@ def plain_data(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return plain_data(value.tolist())
     if isinstance(value, list | tuple):
-        return [_seen(item) if type(item) is float else plain_data(item) for item in value]
+        return [_rounded(item) if type(item) is float else plain_data(item) for item in value]
     if isinstance(value, np.generic):
         return plain_data(value.item())
-    return _seen(value) if isinstance(value, float) else value
+    return _rounded(value) if isinstance(value, float) else value
 
 
-def _seen(value: float) -> float | None:
+def _rounded(value: float) -> float | None:
     return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None

@@ -15,7 +15,7 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
 
-_MANIFOLD = 300.0  # relative difference [%] above which the scale is logarithmic
+_LOG_ABOVE = 300.0  # relative difference [%] above which the scale is logarithmic
 _SPREAD = 0.06  # relative shift in speed between conditions, so that their points do not overlap
 
 
@@ -75,7 +75,7 @@ def differences(points: pd.DataFrame) -> FigureSpec:
                 )
             )  # fmt: skip
     reach = max(np.abs(np.asarray(one.y, float)).max() for one in series)
-    y = Axis("relative difference", "%", linear_below=10.0 if reach > _MANIFOLD else None)
+    y = Axis("relative difference", "%", linear_below=10.0 if reach > _LOG_ABOVE else None)
     return FigureSpec(
         title="Relative difference",
         note="Bars: simultaneous 95 % intervals for all differences; filled: different.",

@@ -22,7 +22,7 @@ _PANELS = (
     ),
     ("fluid_pressure", 1e-6, Axis("p liquid", "MPa", paper=r"fluid pressure $p_{\mathrm{fluid}}$")),
 )
-_NOTHING = 1e-3  # share of the maximum pressure below which a profile is cut off
+_MIN_PRESSURE_SHARE = 1e-3  # share of the maximum pressure below which a profile is cut off
 _WIDEST_GAP = 100.0  # largest ratio of two gaps that are drawn
 _MAX_POINTS = 160  # largest number of points of a profile
 _ACROSS = Axis("across the contact", "mm", paper="coordinate $x$")
@@ -63,7 +63,7 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
         profiles = [profiles.isel(sliding_speed=n) for n in range(profiles.sizes["sliding_speed"])]
     series = []
     pressures = [(p["contact_pressure"] + p["fluid_pressure"]).values for p in profiles]
-    least = _NOTHING * max(pressure.max() for pressure in pressures)
+    least = _MIN_PRESSURE_SHARE * max(pressure.max() for pressure in pressures)
     widest = max(
         np.abs(profile["x"].values[pressure > least]).max(initial=0.0)
         for profile, pressure in zip(profiles, pressures, strict=True)

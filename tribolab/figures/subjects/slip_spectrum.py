@@ -14,7 +14,7 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
 
-_LOUDEST, _QUIETEST = 3.0, 0.3  # highest and lowest value of a map: log10(power / noise)
+_HIGHEST, _LOWEST = 3.0, 0.3  # highest and lowest value of a map: log10(power / noise)
 Slips = Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset]
 
 
@@ -160,6 +160,6 @@ def power_levels(slip: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray] 
         level = np.log10((slip[name] / slip[f"{name}_background"]).values[order])
     speed = np.repeat(slip["sliding_speed"].values[order, None], level.shape[1], axis=1)
     frequency = np.broadcast_to(slip["frequency"].values, level.shape)
-    kept = np.isfinite(level) & (level > _QUIETEST)
+    kept = np.isfinite(level) & (level > _LOWEST)
     rounded = np.array([float(f"{v:.3g}") for v in level[kept]])
-    return speed[kept], frequency[kept], np.minimum(rounded, _LOUDEST)
+    return speed[kept], frequency[kept], np.minimum(rounded, _HIGHEST)

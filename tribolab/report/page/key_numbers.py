@@ -85,8 +85,8 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
 def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
     """Return a table of running-in and steady friction of all runs at one speed; None if none.
 
-    The first rows are the means of repeats, with the U95 of the scatter between them, also without
-    those that contradict the others.
+    The first rows are the means of repeats, with U95 from the scatter between them. If some repeats
+    contradict the others, a second mean excludes them.
     """
     rows = []
     repeats: dict[tuple[str, str, float | None, str], dict[str, RunningIn]] = {}

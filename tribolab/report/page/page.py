@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _MAX_ROWS = 100  # rows in the list of runs; more are compressed and added on request
 _MAX_DOUBTS = 4  # most doubts on the first screen
-_TOGETHER = 8  # runs compressed together
+_RUNS_PER_PACK = 8  # runs compressed together
 _BETWEEN = "<!--next run-->"  # as in assets/files.js
 RunDocuments = Callable[[], Iterable[Json]]
 
@@ -39,8 +39,8 @@ RunDocuments = Callable[[], Iterable[Json]]
 class Detail(NamedTuple):
     """Details of one run: short entry, number from 1 (`place`), and the rest compressed.
 
-    Several runs are compressed together, because their details share most of their text. `packed`
-    of the first of them has the details of all, and is empty for the others; `part` is the index.
+    Several runs are compressed together, because their details share most of their text: the first
+    has the details of all in `packed`, which is empty for the others. `part` is the index in them.
     """
 
     run: Json
@@ -146,7 +146,7 @@ def _context(
 
     def details() -> Iterator[Detail]:
         numbered = enumerate(runs(), start=1)
-        while group := list(itertools.islice(numbered, _TOGETHER)):
+        while group := list(itertools.islice(numbered, _RUNS_PER_PACK)):
             packed = deflated(_BETWEEN.join(text(run, place) for place, run in group).encode())
             for part, (place, run) in enumerate(group):
                 yield Detail(run, place, part, "" if part else packed)

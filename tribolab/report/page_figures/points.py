@@ -15,7 +15,7 @@ from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import error_text
 from tribolab.report.plain import plain_speed
 
-_NAMED = 4  # most runs named in a tooltip
+_MAX_NAMED = 4  # most runs named in a tooltip
 MAX_SPEED_RATIO = 1.1  # speeds that differ by at most this factor count as one
 
 
@@ -183,5 +183,7 @@ def describe_point(
         lines += [many(count, "segment"), f"{samples:.0f} independent samples"]
         names = [point.run for point in points]
         # a line for each name, because long lines of a tooltip are cut
-        lines += names[:_NAMED] + ([f"and {len(names) - _NAMED} more"] * (len(names) > _NAMED))
+        lines += names[:_MAX_NAMED] + (
+            [f"and {len(names) - _MAX_NAMED} more"] * (len(names) > _MAX_NAMED)
+        )
     return "\n".join(lines)

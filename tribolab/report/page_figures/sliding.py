@@ -37,8 +37,8 @@ from tribolab.report.page_figures.waveforms import (
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import lowest_loads
 
-_APART = 1.2  # a spectrogram needs speeds that differ by more than this factor
-_EXCERPT = 800  # most points of a trace
+_MIN_SPEED_RATIO = 1.2  # a spectrogram needs speeds that differ by more than this factor
+_MAX_POINTS = 800  # most points of a trace
 # line styles (in a liquid, dry) of the first quantity, and of the second one
 _STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
 
@@ -148,7 +148,7 @@ def _trace(
     inside = np.flatnonzero((time >= start) & (time <= stop))
     values = np.asarray(main_signal(run, friction).values, float)[inside]
     sign = int(segments["direction"][number]) or 1
-    kept = envelope_index(time[inside], values, _EXCERPT // 2)
+    kept = envelope_index(time[inside], values, _MAX_POINTS // 2)
     distance = 1e6 * float(segments["sliding_speed"][number]) * (time[inside] - start)
     return distance[kept], sign * values[kept]
 
@@ -172,13 +172,13 @@ def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
 
 
 # unit of distance, 1 µm in this unit, and the distance [µm] from which it is used
-_UNITS_OF_WAY = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))
+_DISTANCE_UNITS = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))
 
 
 def _traces(opened: Sequence[_Opened]) -> FigureSpec:
     series = []
     longest = max((d[-1] for c in opened for _, d, _ in c.traces if d.size), default=0.0)
-    unit, scale = next((u, s) for u, s, least in _UNITS_OF_WAY if longest >= least)
+    unit, scale = next((u, s) for u, s, least in _DISTANCE_UNITS if longest >= least)
     for contact in opened:
         for number_, (speed, distance, values) in enumerate(contact.traces):
             style = _STYLES[number_ > 0][contact.labels["open"]]
@@ -273,5 +273,5 @@ def _spectrogram(opened: Sequence[_Opened]) -> FigureSpec:
         ),
         "Ratio of the power spectrum to its noise over speed and frequency.",
         (Panel(SPEED_AXIS, Axis("frequency", "Hz", log=True)),),
-        tuple(series) if high > _APART * low else (),
+        tuple(series) if high > _MIN_SPEED_RATIO * low else (),
     )
