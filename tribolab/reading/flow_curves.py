@@ -13,7 +13,7 @@ from tribolab.reading.modulus_tables import Column, TableKind, find_table, numbe
 from tribolab.reading.raw.source import read_unchanged
 
 _UNITS = {"shear_rate": "1/s", "viscosity": "Pa s"}
-_SAME_RATE = 0.02  # difference in ln(rate) between rows of one set-point
+_SAME_RATE = 0.02  # relative difference of shear rates at the same set-point
 
 
 class FlowCurve(NamedTuple):

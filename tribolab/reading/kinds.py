@@ -70,7 +70,7 @@ def _is_map(path: Path) -> bool:
         from tribolab.reading.scans.formats.arrays import is_map_file
 
         return is_map_file(path)
-    except (OSError, ValueError, ImportError, ReadError):  # whoever reads the file reports it
+    except (OSError, ValueError, ImportError, ReadError):  # reading it later reports the error
         return False
 
 

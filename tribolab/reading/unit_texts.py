@@ -10,7 +10,7 @@ from tribolab.units.conversion import conversion
 from tribolab.units.reciprocals import Counted
 from tribolab.units.spellings import WEIGHTS
 
-# SI units of recorded quantities: a text that converts to one of them is a unit
+# SI units of recorded quantities; text is taken as a unit if it converts to any of them
 DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
     *("m/s**2", "N m"),

@@ -138,7 +138,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         unit = _PER.sub("/", unit)
         unit = unit_in_words(unit)
         for text in (unit, unit.lower() if len(unit) > 3 else unit):
-            # a dimensionless ending is part of the name: the N/N of F_N/N
+            # a dimensionless ending belongs to the name: "N/N" in "F_N/N"
             unitless = converts(text, "1") and text != "%"
             if name and ((not unitless and is_unit(text)) or text in _ANGLES):
                 return name, text
@@ -232,7 +232,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     name
         Name of the column without its unit.
     unit
-        Its unit; None without one. Quantities of other dimensions are left out; counts may be any
+        Its unit; None if unknown. Quantities of other dimensions are left out; counts may be any
         quantity except a pure number.
     scan
         Whether the file contains a profile instead of a run.

@@ -268,7 +268,7 @@ def _dimension(unit: str | None) -> str | None:
 
 
 def add_unique(found: dict[str, Amount], amount: Amount) -> None:
-    """Add an amount to `found` under a unique name, unless it has the same name and key as one."""
+    """Add an amount to `found` under a unique name, unless it is there already."""
     if amount.name in found and amount.key == found[amount.name].key:
         return
     name, number = amount.name, 1

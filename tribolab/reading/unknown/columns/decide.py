@@ -1,4 +1,4 @@
-"""Assignment of quantities to all columns at once, such that the evidence is largest in total."""
+"""Assignment of quantities to all columns at once, with the largest total evidence."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _NOT_PROPOSED = -1000.0
 
 
 def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
-    """Assign each quantity to at most one column, such that the evidence is largest in total.
+    """Assign each quantity to at most one column, with the largest total evidence.
 
     Return the columns with quantities and guesses; columns without a quantity have the reason.
     """

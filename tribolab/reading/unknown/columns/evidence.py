@@ -160,7 +160,7 @@ def number_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def advance_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a constant time, or position of a scan, if another such column always rises.
+    """Rule out a constant column of time (or x of a scan) if another one rises in every row.
 
     Files: a Phoenix TE 67, "Step Time" next to "Test Time" (kyembot/pin-on-disk-data-analysis); a
     pen profilometer, two encoders (jonathan-bender/scaling-octo-telegram).

@@ -42,8 +42,8 @@ _BY_LOAD = 3.0  # log odds if a reading is compared with the stated load
 _LOADED = 0.4  # of the largest reading; above it, the contact is loaded
 _MAX_READINGS = 0.98  # quantile that is taken as the largest reading: few outliers exceed it
 _MOTION = ("position", "sliding_velocity", "set_speed")
-_MAX_OF_SLED = 5.0  # pulling force over weight: no dry contact has a higher coefficient
-_READS_LOAD = (0.75, 1.33)  # reading over stated load, if the cell measures the load
+_MAX_OF_SLED = 5.0  # largest coefficient of friction of a dry sled
+_READS_LOAD = (0.75, 1.33)  # ratio of reading to stated load, if the cell measures the load
 
 
 def legend_evidence(layout: Layout) -> Rule:

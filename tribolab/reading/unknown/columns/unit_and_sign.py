@@ -18,7 +18,7 @@ Bare = tuple[str, str | None, bool]  # name, unit, whether the dialect must stat
 FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # for a coefficient
 IN_SECONDS = "time is in s"  # guess for a clock without a unit
 _NOISE = 0.1  # of the highest load; an unloaded sensor may show as much
-_BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # the place of a unit
+_BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # usually a unit
 _FACTOR = re.compile(
     r"[x×*·]?\s?\b10\s?\^\s?-?\d+|[x×*·]\s?1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
 )

@@ -83,7 +83,7 @@ class Gain(NamedTuple):
 
 
 def find_gain(layout: Layout, columns: Sequence[DraftColumn], force: str) -> Gain | None:
-    """Return the gain of the only force column in volts, if exactly one line states it.
+    """Return column and gain of a force in volts, if both are unique in the file; else None.
 
     `force` is "friction_force" or "normal_force".
     """

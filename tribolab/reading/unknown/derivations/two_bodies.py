@@ -114,7 +114,7 @@ def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...
 def second_is_faster(
     pair: Pair, radii: Sequence[Amount], numbers: np.ndarray, friction: DraftColumn | None
 ) -> bool:
-    """Whether friction is positive when the second surface is the faster one.
+    """Whether the friction is positive while the second surface is faster than the first.
 
     The first value is taken as the zero of the friction only if nothing slides then. File: a
     twin-disc rig, whose record starts during the test.

@@ -25,7 +25,7 @@ _STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
 
 
 def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:
-    """Return the track radius, if exactly one amount of a file is the radius or the diameter.
+    """Return the track radius, if a file states exactly one radius or diameter of a track.
 
     The radius has a `guess` if the text only states a radius "R", or the size of the rotating
     body. With `rim`, the track is the rim of the rotating body.
@@ -68,7 +68,7 @@ def find_ring(values: Sequence[Amount]) -> tuple[Amount, Amount] | None:
 
 
 def find_arm(values: Sequence[Amount]) -> Amount | None:
-    """Return the lever arm of the torque, if exactly one amount of a file is a lever arm."""
+    """Return the lever arm of the torque, if a file states exactly one lever arm."""
     return _lengths(values).only("arm")
 
 

@@ -135,7 +135,7 @@ def _only(values: Sequence[Amount], concept: str, unit: str) -> Amount | None:
 
 
 def _says_several(value: Amount) -> bool:
-    """Whether a line states more than one number of its unit: '2 Hz, then 5 Hz', '2 / 5 Hz'."""
+    """Whether a line states several numbers in one unit: '2 Hz, then 5 Hz', '2 / 5 Hz'."""
     if value.source != "preamble" or not value.own_unit:
         return False
     said = {n.value for n in numbers_in(value.text) if n.unit == value.own_unit}
@@ -155,7 +155,7 @@ def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftCo
             lengths.append(column)
         elif is_stroke_frequency(name, unit) and not column.used:
             frequencies.append(column)
-    # the measured frequency, if the set one is recorded as well
+    # if set and measured frequency are recorded, the measured one
     measured = [c for c in frequencies if role_of(c.label) != "set"]
     return lengths, measured if len(frequencies) > 1 else frequencies
 

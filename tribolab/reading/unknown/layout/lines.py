@@ -21,7 +21,7 @@ _NUMBER = {
     ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
     ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
 }
-# text in place of a value; and dates and times of day
+# text in place of a number, dates, and times of day
 _INSTEAD = rf"nan|[+-]?inf|null|n/?a|-{{1,8}}|[*#][*.#]*[a-z{MICRO}]*!?|err\w*|over\w*|ovl|none"
 _MISSING = re.compile(rf"(?i){_INSTEAD}")
 _NO_NUMBER = re.compile(
@@ -57,7 +57,10 @@ class Grammar:
         return self._number.fullmatch(cell) is not None
 
     def merit(self, line: str) -> tuple[int, int]:
-        """Return the number of cells, and the excess of numbers over texts; 0 if it is no row."""
+        """Return the number of cells of a line, and how many more of them are numbers than text.
+
+        The second value is 0 if the line is no row of a table, else at least 1.
+        """
         if self.is_plain(line):
             parts = line.split(self._mark)
             return len(parts), sum(1 for part in parts if part.strip())
@@ -105,7 +108,7 @@ class Grammar:
 
 
 def find_encoding(head: bytes) -> tuple[str, list[str]]:
-    """Return the encoding, and a guess about it, on which no number depends.
+    """Return the encoding of a file, and a list of guesses about it (numbers are not affected).
 
     For text that is not UTF-8, this is the encoding that gives the most known words; if there are
     none, the Western European one.
@@ -183,7 +186,7 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
     filled = [line for line in lines if line.strip()]
     voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
     best, highest = None, 0
-    alone = False  # delimiters that no line contains all give the same: one of them is tried
+    alone = False  # one delimiter that no line contains is tried, as all give the same
     for delimiter in DELIMITERS:
         if delimiter != "whitespace" and not any(delimiter in line for line in voters):
             if alone:

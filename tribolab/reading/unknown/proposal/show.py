@@ -23,7 +23,7 @@ from tribolab.units.quantities import quantity
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
 _COLUMNS = 12  # columns of raw cells that are shown
 _ABREAST = 5  # quantities that are shown side by side
-_LISTED = 60  # columns that are listed; further ones only if their quantity is known
+_LISTED = 60  # columns that are listed; any others are listed only if their quantity is known
 
 
 def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
