@@ -143,7 +143,7 @@ class _Record(NamedTuple):
 
     mean: float
     std: float
-    reach: float  # from the smallest to the largest sample
+    reach: float  # largest minus smallest sample
     samples: int
     duration: float
     blocks: np.ndarray
@@ -195,7 +195,7 @@ def _describe(
 
 
 def _without_many_turns(record: _Record, fine: np.ndarray, angle: np.ndarray) -> _Record:
-    """Remove waves that repeat with each of many turns, from finer intervals."""
+    """Return a record minus waves that repeat with each turn, which finer intervals resolve."""
     waves = fitted_waves(fine, in_step(fine, angle))
     repeated = np.sum([wave.signal for wave in waves], axis=0)
     return record._replace(

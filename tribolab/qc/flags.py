@@ -122,7 +122,7 @@ def attach(
 def attach_all(
     data: xr.Dataset, flags: Iterable[tuple[str, Mapping[str, np.ndarray]]], bits: Mapping[str, int]
 ) -> xr.Dataset:
-    """Return a dataset with quality flags of several variables, like `attach` of one."""
+    """Return a dataset with quality flags of several variables; see `attach`."""
     pairs: dict[str, _Flags] = {}
     names = []
     for name, own in flags:

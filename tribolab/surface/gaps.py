@@ -25,7 +25,7 @@ _MAX_FACTOR = float(np.log(2.0))  # change of ln(power) above which gaps dominat
 
 
 class GapEffect(NamedTuple):
-    """Effect of gaps on a result: mean shift of the result, and standard error once corrected.
+    """Effect of gaps on a result: its mean shift, and the standard error left after correction.
 
     The result minus the shift is the result of the complete scan, within 1.96 errors in 95 % of
     cases. A large share of the shift from bridges hides the surface.

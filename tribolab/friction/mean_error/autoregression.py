@@ -113,7 +113,7 @@ class Sieve(NamedTuple):
 
 
 def sieve_of(records: np.ndarray, fitted: int, highest: int = 8) -> Sieve:
-    """Return models of the residuals of a fit, with the correlation that the fit removed.
+    """Return models of a fit's residuals, corrected for the correlation that the fit removed.
 
     Parameters
     ----------

@@ -14,7 +14,8 @@ _FREQUENCY_STEP = 0.125  # step of the trial frequencies, in cycles per record
 _MAX_FREQUENCY = 0.47  # highest trial frequency, in cycles per sample
 _GOLDEN = 0.382
 _GOLDEN_ROUNDS = 18  # golden-section steps, which find a frequency to 1e-4 of a grid step
-_GAIN_OFF_GRID = 1.02  # most by which the best frequency exceeds the best grid frequency in power
+# largest ratio of power at the best frequency to that at the best on the grid
+_GAIN_OFF_GRID = 1.02
 
 
 class _Grid(NamedTuple):

@@ -157,7 +157,7 @@ def _without_slow_wave(
 
 
 def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
-    """Return a record without drift slower than its oscillation, which makes drops unlike rises."""
+    """Return a record minus drift slower than its oscillation, which biases rises and drops."""
     periods = frequency * record.values.size * record.spacing
     degree = int(
         np.clip(

@@ -89,7 +89,7 @@ def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | Non
 
 
 def _integrated(y: np.ndarray, s: np.ndarray, scale: float | None) -> Mean:
-    """Return the mean, integrated over the unknown scatter between repeats and its prior."""
+    """Return the mean of repeats, averaged over the possible scatter between them (Bayesian)."""
     size = float(np.sqrt(np.median(s**2) + y.var()))
     tau = _SCATTER_GRID * size
     w = 1 / (s**2 + tau[:, None] ** 2)
@@ -180,7 +180,7 @@ def pooled_between_runs(table: np.ndarray) -> Pooled:
     if runs < 2 or not speeds:
         return Pooled(0.0, 0.0)
     rows, columns = common.mean(axis=1), common.mean(axis=0)
-    of_runs = float(rows.var(ddof=1))  # offset, and 1/n of the variance from speed to speed
+    of_runs = float(rows.var(ddof=1))  # variance of offsets, plus 1/n of that from speed to speed
     if speeds == 1:
         return Pooled(float(np.sqrt(of_runs)), runs - 1.0)
     rest = common - rows[:, None] - columns + common.mean()

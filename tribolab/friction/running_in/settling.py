@@ -87,7 +87,8 @@ def settling_of(values: np.ndarray) -> Settling:
     if size < limits.MIN_VALUES.value or np.ptp(values) <= 1e-12 * np.abs(values).max(initial=0):
         return Settling(NONE, 0, size, 0.0, float(values[:1].mean()) if size else np.nan)
     stop = size
-    last = _settling(values[size // 3 :][::-1])  # without its possible running-in
+    # backwards from the end, without a possible running-in
+    last = _settling(values[size // 3 :][::-1])
     if last.kind in (RUN_IN, STEP) and last.start <= limits.LONGEST_CHANGE_AT_END.value * size:
         stop = size - last.start
     found = _settling(values[:stop])

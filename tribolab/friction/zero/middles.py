@@ -98,7 +98,7 @@ def middles(
 
 
 class StrokeSums(NamedTuple):
-    """Each force minus its zero as a weighted sum over strokes: strokes, weights (segment, term)."""
+    """Each force minus its zero, as a weighted sum over strokes (segment, term)."""
 
     stroke: np.ndarray
     weight: np.ndarray
@@ -107,15 +107,15 @@ class StrokeSums(NamedTuple):
 def interpolated(
     middles: Middles, pair: np.ndarray, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, StrokeSums]:
-    """Return zero and drift at each segment from the middles of the loops, and terms of error.
+    """Return zero and drift at each segment, interpolated between the middles of the loops.
 
     Returns
     -------
     tuple
         Zero of each segment (segment) in the unit u of the middles, its drift [u/s] (segment), and
         the strokes that contribute to each force without its zero. A stroke of a pair uses the
-        middle and slope of its own loop, a stroke before the first or after the last loop those of
-        that loop; a stroke between two loops uses the straight line between them.
+        middle and slope of its own loop; a stroke before all loops uses the first one, a stroke
+        after all the last one; a stroke between two loops uses the straight line between them.
     """
     count = time.size
     known = np.flatnonzero(np.isfinite(middles.value))

@@ -162,7 +162,7 @@ def _zero_drifts(
     reads: np.ndarray,
     segments: xr.Dataset,
 ) -> bool:
-    """Return whether the load drifts alike at rest and in strokes, so that its zero drifts."""
+    """Return whether the load drifts equally at rest and in strokes, as a drifting zero shows."""
     at = np.array([float(time[level].mean()) for level in levels])
     ends = (segments[f"trimmed_{end}"].values for end in ("start", "stop"))
     first, last = (np.searchsorted(time, end) for end in ends)

@@ -224,7 +224,7 @@ def _uneven_interval(interval: np.ndarray, factor: float) -> float:
 
 
 def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np.ndarray:
-    """Return the indices of samples at which the sampling rate changes for some time.
+    """Return the indices of samples from which the sampling rate differs for some time.
 
     Parameters
     ----------
