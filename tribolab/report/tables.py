@@ -29,7 +29,7 @@ _SIGN = "'"
 def uncomputed(cell: Any) -> Any:
     r"""Return a cell with a leading ' if a spreadsheet would compute its text as a formula.
 
-    Numbers, also those written as text, remain unchanged. Control characters are escaped.
+    Numbers, including numbers as text, remain unchanged. Control characters are escaped.
 
     Examples
     --------

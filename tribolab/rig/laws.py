@@ -46,7 +46,7 @@ class StribeckLaw:
     boundary
         Friction coefficient of the plateau at low speed.
     transition_speed, exponent
-        The solid part is ``boundary * exp(-(v/transition_speed)^exponent)`` [m/s].
+        Speed [m/s] and exponent of the solid part ``boundary exp(-(v/transition_speed)^exponent)``.
     drag
         The viscous part is ``drag * (v / 1 cm/s)^0.4``.
 

@@ -70,7 +70,7 @@ def slip_traces(
     surfaces
         All surfaces of the study in order, for the colours.
     longest
-        Largest distance drawn [m]; by default that of the shortest stroke.
+        Largest distance drawn [m]; by default at most 1.5 times the shortest stroke.
 
     Raises
     ------

@@ -146,7 +146,7 @@ def write_figure(figure: Figure, folder: Path, file: str, *, pdf: bool = False) 
     folder
         The results folder.
     file
-        Path of the SVG relative to it; the table has the same name with ``.csv``.
+        Path of the SVG relative to this folder; the table has the same name with ``.csv``.
     pdf
         Whether to write it also as PDF.
     """

@@ -43,7 +43,7 @@ def scans(
 
     Notes
     -----
-    Roughness is drawn on twice the scan's length, so that it is not periodic, at half the pitch.
+    Roughness is generated at half the pitch, on twice the length so that scans are not periodic.
     The cylinder is a circle, not a parabola: over 25 mm they differ by 9 um, and a parabola fitted
     to it has a curvature 0.7 % too large. The stylus is a sphere that touches from above (dilation
     along the profile, ignoring heights next to the track). Noise and resolution are added last.
