@@ -23,7 +23,7 @@ _WORDS = {
     "time_origin_s": "first time",
     "time_source": "time from",
 }
-# values that need no line of their own
+# usual values of attributes, which are not shown
 _USUAL = {"speed_from": ("column", "none"), "time_origin_s": (0.0,), "time_source": ("recorded",)}
 _ROUNDING = 1e-6  # points are evenly spaced if they deviate by less than this share of a pitch
 

@@ -98,7 +98,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
 
 
 def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) -> list[Series]:
-    """Return the series for one load: band, line, points, residuals and their common part."""
+    """Return the series for one load: band, line, points, residuals, residuals by shared errors."""
     v, measured = curve["sliding_speed"].values, points["sliding_speed"].values
     mu, sem = (points[f"friction_coefficient{end}"].values for end in ("", "_sem"))
     off, shared = (

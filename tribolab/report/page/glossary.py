@@ -69,7 +69,7 @@ OF_SURFACES = frozenset(
     ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Sq", "Slope rms", "Hurst exponent", "Roll-off")
 )
 
-# those among them that only pages with a contact need
+# terms among these that only pages with a contact need
 OF_CONTACT = frozenset(("A/A₀", "Pull-off force"))
 
 # terms that only pages with a model need

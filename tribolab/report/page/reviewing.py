@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
 
 _HEADER = re.compile(r"^[ \t]*\[\[[ \t]*decision[ \t]*\]\]", re.MULTILINE)
-_ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comment lines at the end of a text
+_ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comments before a decision
 
 
 def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> Json:

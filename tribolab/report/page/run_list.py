@@ -17,7 +17,7 @@ from tribolab.report.plain import plain_speed
 
 _ODD = "odd"
 _ALL, _STEADY = "all speeds", "steady"
-_DIGITS = 6  # decimals of a deviation when sorting: two repeats deviate equally but for rounding
+_DIGITS = 6  # decimals of deviations in sorting, since two repeats deviate equally
 STATES = {
     "failed": "not used: could not be read",
     "rejected": "not used: a check failed",

@@ -241,7 +241,7 @@ _TERM = re.compile("|".join(map(re.escape, TERMS)), re.IGNORECASE)
 
 
 def explained(text: str) -> list[tuple[str, str]]:
-    """Split a sentence at glossary terms; return each piece with its explanation, else "".
+    """Split a sentence at glossary terms; return pieces, each with its explanation or "".
 
     Examples
     --------
