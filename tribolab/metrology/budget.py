@@ -18,7 +18,7 @@ from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 from tribolab.reading.dialect.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 
-# columns with the scatter of the curve itself
+# variables that describe the scatter of the curve itself
 _OWN = ("friction_coefficient_u", "friction_coefficient_dof")
 StatedUncertainties = Mapping[str, StatedUncertainty | Mapping[str, Any]]
 
@@ -169,7 +169,7 @@ class ZeroApart(NamedTuple):
 
 
 def zero_apart(friction: xr.Dataset, known: Mapping[str, Known]) -> ZeroApart:
-    """Return a result whose standard errors exclude the stated zero: it is a separate contribution.
+    """Return a result whose standard errors exclude the stated zero, now a separate contribution.
 
     Parameters
     ----------

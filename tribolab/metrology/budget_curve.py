@@ -61,9 +61,9 @@ def curve_uncertainty(
     -----
     Errors shared by all runs of an instrument are averaged with their sign and added; errors of
     different instruments are independent. An error that the scatter already includes is not added
-    again: errors that vary with the run are included with two runs or more, with the mount from two
-    named mounts on, with the stroke if a point has two observations, and calibrations if every run
-    of a point is from another instrument.
+    again: one that varies with the run if a point has two runs, with the mount if there are two
+    named mounts, with the stroke if a point has two observations; and calibrations if every run of
+    a point is from another instrument.
     """
     points = np.log(curve["sliding_speed"].values)
     size = points.size
@@ -72,16 +72,16 @@ def curve_uncertainty(
     instruments: dict[str, np.ndarray] = {}
     unstated: dict[str, bool] = {}
     for part, stated in zip(map(kept, frictions), known, strict=True):
-        place, own, count = _point_of_segments(part, points)
+        index, own, count = _point_of_segments(part, points)
         met, instrument = count > 0, RunAttributes.from_attrs(part.attrs).instrument
         runs += met
         observations += count
         instruments[instrument] = instruments.get(instrument, np.zeros(size, dtype=bool)) | met
         inputs = contributions(readings_of(part), stated)
         unstated[instrument] = unstated.get(instrument, True) and not set(inputs) & set(stated)
-        total = np.bincount(place, minlength=size)
+        total = np.bincount(index, minlength=size)
         for name, row in inputs.items():
-            mean = np.bincount(place, weights=row[own], minlength=size)
+            mean = np.bincount(index, weights=row[own], minlength=size)
             key = _Part(name, instrument, stated.get(name))
             sums.setdefault(key, np.zeros(size))[met] += mean[met] / total[met]
     mounts, apart = _mounts(frictions), np.sum(list(instruments.values()), axis=0)
@@ -129,17 +129,17 @@ def _part_labels(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
 def _point_of_segments(
     friction: xr.Dataset, points: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the point of each used segment, these segments, and the observations per point."""
+    """Return the point index of each used segment, these segments, and observations per point."""
     speed = friction["sliding_speed"].values
     mu = friction["friction_coefficient"].values
     own = np.flatnonzero(np.isfinite(mu) & (speed > 0))
     edges = (points[1:] + points[:-1]) / 2
-    place = np.searchsorted(edges, np.log(speed[own]))
+    index = np.searchsorted(edges, np.log(speed[own]))
     alone = -1 - own
     both = readings_of(friction).both_ways[own]
     key = np.where(both, friction["pair"].values[own], alone) if "pair" in friction else alone
     _, first = np.unique(key, return_index=True)
-    return place, own, np.bincount(place[first], minlength=points.size)
+    return index, own, np.bincount(index[first], minlength=points.size)
 
 
 def _mounts(frictions: Sequence[xr.Dataset]) -> int:

@@ -18,7 +18,7 @@ _RECTANGULAR = ("half-width", "step")
 # The scatter of few repeats can be small by chance. Below _SMALL_DOF degrees of freedom its share x
 # in the Welch-Satterthwaite sum is increased to 1 - (1 - x)^(1 + _CHANCE/nu^2): the coverage of U95
 # for two runs plus a calibration is then 93.4 to 96.4 % for any ratio of both (87 to 95 % without),
-# for three runs 95 to 95.8 %. For two runs no rule is within 1 %
+# for three runs 95 to 95.8 %. For two runs, no such rule is accurate to 1 %.
 _SMALL_DOF, _CHANCE = 4.0, 10.0
 _DOMINANT = 0.7  # share of the variance above which one rectangular part sets the shape
 
@@ -98,9 +98,9 @@ def combine_parts(
     Parameters
     ----------
     data
-        Values over `dim`.
+        Dataset of the values.
     dim
-        The dim of the values.
+        Dim along which there are values.
     scatter
         Scatter of the data.
     parts
@@ -114,8 +114,8 @@ def combine_parts(
     -------
     xarray.Dataset
         `data` with ``friction_coefficient_u``, ``_dof``, ``_U95`` (dim) and ``uncertainty_part``,
-        ``uncertainty_part_dof`` (part, dim). Attributes: ``uncertainty_says``: limits of
-        the uncertainty, in words.
+        ``uncertainty_part_dof`` (part, dim). Attributes: ``uncertainty_says``: what
+        the uncertainty omits or overstates, in words.
     """
     size = data.sizes[dim]
     names = [str(s.name) for s in scatter] + list(parts)

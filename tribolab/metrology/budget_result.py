@@ -34,7 +34,7 @@ class UncertaintyBudget:
 
     @property
     def dim(self) -> str:
-        """Dimension over which there are values: "segment" or "sliding_speed"."""
+        """Dimension of the values: "segment" or "sliding_speed"."""
         return str(self.data["friction_coefficient"].dims[0])
 
     @property
@@ -64,9 +64,9 @@ class UncertaintyBudget:
         AnalysisError
             If there is no such value.
         """
-        place = self._place(at)
-        parts = self.data["uncertainty_part"].values[:, place]
-        dof = self.data["uncertainty_part_dof"].values[:, place]
+        index = self._index(at)
+        parts = self.data["uncertainty_part"].values[:, index]
+        dof = self.data["uncertainty_part_dof"].values[:, index]
         total = float(np.sum(parts**2))
         rows = []
         for i in np.argsort(-np.abs(parts), kind="stable"):
@@ -87,7 +87,7 @@ class UncertaintyBudget:
                 }
             )
         mu, u, nu, wide = (
-            float(self.data[f"friction_coefficient{end}"].values[place])
+            float(self.data[f"friction_coefficient{end}"].values[index])
             for end in ("", "_u", "_dof", "_U95")
         )
         whole = {"part": "combined", "u": u, "unit": "1", "stated": "", "varies": "", "dof": nu}
@@ -96,7 +96,8 @@ class UncertaintyBudget:
         table.attrs = {"friction_coefficient": mu, "U95": wide, "k": float(coverage_factor(nu))}
         return table
 
-    def _place(self, at: int | None) -> int:
+    def _index(self, at: int | None) -> int:
+        """Return the index of a value, by default of that with the median relative uncertainty."""
         mu, u = (self.data[f"friction_coefficient{end}"].values for end in ("", "_u"))
         if at is not None:
             if not -mu.size <= at < mu.size:

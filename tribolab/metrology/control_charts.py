@@ -22,11 +22,9 @@ DEFAULT_RULES = (SHEWHART, EWMA)
 _LIMIT = 3.0
 _EWMA_WEIGHT, _EWMA_LIMIT = 0.2, 2.86
 _CUSUM_SLACK, _CUSUM_LIMIT = 0.5, 4.77
-FEWEST_OF_BASELINE, MANY = (
-    5,
-    30,
-)  # fewest points of a baseline; number from which moving ranges are used
-# mean moving range of normally distributed values over their standard deviation
+FEWEST_OF_BASELINE = 5  # fewest points of a baseline
+MANY = 30  # points of a baseline from which its standard deviation is from moving ranges
+# ratio of mean moving range to standard deviation, for independent normally distributed values
 _RANGE_TO_SIGMA = 2 / math.sqrt(math.pi)
 RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, for each point after the first
 
@@ -57,7 +55,7 @@ class Baseline:
     correlated: bool = False
 
     def student_limit(self, limit: float) -> float:
-        """Return the number of estimated deviations equivalent to `limit` exactly known ones.
+        """Return a limit in estimated standard deviations, equivalent to `limit` in known ones.
 
         Notes
         -----
@@ -79,14 +77,14 @@ def baseline_of(values: ArrayLike) -> Baseline:
     Raises
     ------
     AnalysisError
-        If there are fewer, or they do not vary.
+        If there are fewer than five points, or they do not vary.
 
     Notes
     -----
-    With fewer than 30 points the standard deviation of all is used, which is the most accurate.
-    With more it is the mean moving range over 1.128, which slow drift hardly increases, unless
-    neighbours are significantly correlated (r_1 above 2/sqrt(n)), which makes moving ranges too
-    small.
+    With fewer than 30 points, sigma is the standard deviation of all points, which is the most
+    accurate. With more points it is the mean moving range divided by 1.128, which slow drift hardly
+    increases; but if neighbours are significantly correlated (r_1 above 2/sqrt(n)), moving ranges
+    are too small, and the standard deviation of all points is used.
 
     Examples
     --------
@@ -129,7 +127,7 @@ class Chart:
     smoothed, smoothed_low, smoothed_high
         The exponentially weighted mean and its limits (point).
     signals
-        Which points signal, by rule (point).
+        For each rule, a mask of the points that signal (point).
     """
 
     low: float
@@ -235,9 +233,9 @@ def _smooth(standard: Array, centre_error: float) -> tuple[Array, Array]:
     """Return exponentially weighted means (series, point), and their standard deviation (point)."""
     z = np.empty_like(standard)
     last = np.zeros(standard.shape[0])
-    for place in range(standard.shape[1]):
-        last = _EWMA_WEIGHT * standard[:, place] + (1 - _EWMA_WEIGHT) * last
-        z[:, place] = last
+    for point in range(standard.shape[1]):
+        last = _EWMA_WEIGHT * standard[:, point] + (1 - _EWMA_WEIGHT) * last
+        z[:, point] = last
     steps = np.arange(1, standard.shape[1] + 1)
     decay = 1 - (1 - _EWMA_WEIGHT) ** steps  # sum of the weights so far
     own = _EWMA_WEIGHT / (2 - _EWMA_WEIGHT) * (1 - (1 - _EWMA_WEIGHT) ** (2 * steps))
@@ -248,10 +246,10 @@ def cusums(standard: Array, slack: float = _CUSUM_SLACK) -> tuple[Array, Array]:
     """Return the upper and lower cumulative sums, CUSUM (series, point)."""
     up, down = np.empty_like(standard), np.empty_like(standard)
     high, low = np.zeros(standard.shape[0]), np.zeros(standard.shape[0])
-    for place in range(standard.shape[1]):
-        high = np.maximum(0.0, high + standard[:, place] - slack)
-        low = np.maximum(0.0, low - standard[:, place] - slack)
-        up[:, place], down[:, place] = high, low
+    for point in range(standard.shape[1]):
+        high = np.maximum(0.0, high + standard[:, point] - slack)
+        low = np.maximum(0.0, low - standard[:, point] - slack)
+        up[:, point], down[:, point] = high, low
     return up, down
 
 

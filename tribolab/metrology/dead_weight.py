@@ -23,9 +23,9 @@ class DeadWeightGain(NamedTuple):
     Parameters
     ----------
     gain
-        Step of the reading over the weight [1].
+        Step of the reading divided by the weight [1].
     error
-        Its standard error from the noise and the scatter of the steps [1].
+        Standard error of the gain [1], from the noise and the scatter of the intervals.
     zero
         Reading without the weight [N].
     """
@@ -47,7 +47,7 @@ def dead_weight_gain(
     weight
         The weight [N], or text such as ``"19.62 N"``.
     signal
-        Loaded channel: ``"normal_force"``, or ``"friction_force"`` over a pulley.
+        Channel that carries the weight: ``"normal_force"``, or ``"friction_force"`` by a pulley.
 
     Returns
     -------
@@ -60,10 +60,10 @@ def dead_weight_gain(
 
     Notes
     -----
-    A sample belongs to the nearer level. Intervals between two changes are averaged without a tenth
-    at each end, then all intervals with and without the weight. The difference over the weight is
-    the gain. Its error is the larger of that from (correlated) noise and that from the scatter of
-    intervals.
+    Each sample is assigned to the nearer of the two levels. Each interval between two changes of
+    level is averaged without a tenth at both ends, then these means with and without the weight.
+    Their difference divided by the weight is the gain. Its error is from (correlated) noise or from
+    the scatter of the intervals, whichever is larger.
 
     Examples
     --------

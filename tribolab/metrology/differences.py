@@ -39,7 +39,7 @@ class Differences:
     adjusted_p_value
         Probability that any of the points shows such a difference by chance (point).
     factor
-        Half width of the simultaneous intervals in standard errors (point).
+        Half-width of the simultaneous confidence intervals, in standard errors (point).
     methods
         Correction for several points: ``"permutation"``, ``"rotation"`` or ``"Bonferroni"``
         (condition).
@@ -61,12 +61,12 @@ class Differences:
 
     @property
     def low(self) -> Array:
-        """Lower ends of the intervals that hold simultaneously for all points."""
+        """Lower ends of the simultaneous confidence intervals of all points (point)."""
         return self.difference - self.factor * self.standard_error
 
     @property
     def high(self) -> Array:
-        """Upper ends of the intervals that hold simultaneously for all points."""
+        """Upper ends of the simultaneous confidence intervals of all points (point)."""
         return self.difference + self.factor * self.standard_error
 
     @property
@@ -116,15 +116,14 @@ def differences_of_groups(
     AnalysisError
         If there is nothing to compare.
 
-    Notes
-    -----
-    At each point Welch's t [1]_. The points of a condition are tested jointly by permutations of
-    its runs (`permutation_test`) if each group has four or more, and there are enough permutations
-    for the number of conditions; else by rotations (`rotation_test`), which assume normally
-    distributed runs. If runs too few for permutations lack points, Bonferroni's rule is used with
-    Student's distribution. Conditions are independent; Sidak's rule corrects for their number. P
-    values and intervals are from the same draws, so that an interval excludes zero if the adjusted
-    p is at most alpha. No adjusted p is below that of the point alone, and no interval is narrower.
+    Notes ----- Each point is tested by Welch's t [1]_. The points of a condition are tested jointly
+    by permutations of its runs (`permutation_test`) if each group has four or more, and there are
+    enough permutations for the number of conditions; else by rotations (`rotation_test`), which
+    assume normally distributed runs. If there are too few runs for permutations and some of them
+    lack points, Bonferroni's rule is used with Student's distribution. Conditions are independent;
+    Sidak's rule corrects for their number. P values and intervals are from the same draws, so that
+    an interval excludes zero if the adjusted p is at most alpha. No adjusted p is below that of the
+    point alone, and no interval is narrower.
 
     References
     ----------
@@ -194,7 +193,7 @@ def _points(first: Array, second: Array, terms: Array) -> _Points:
 def _adjust_jointly(
     first: Array, second: Array, terms: Array, at: _Points, level: float, seed: int
 ) -> tuple[Array, Array, str]:
-    """Return adjusted p values of all points, the factor of their intervals, and the method."""
+    """Return adjusted p values and interval factors of a condition's points, and the method."""
     if permutations_will_do(len(first), len(second), level):
         scores = np.abs(_ratio(at.difference, at.standard_error))
         return *permutation_test(first, second, terms, scores, level, seed), PERMUTATION
@@ -233,8 +232,8 @@ def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -
     """
     low, high = compared.interval(1 - 2 * alpha)
     words = []
-    for place, differs in enumerate(compared.differs):
-        within = margin is not None and max(-low[place], high[place]) <= margin[place]
+    for i, differs in enumerate(compared.differs):
+        within = margin is not None and max(-low[i], high[i]) <= margin[i]
         words.append(EQUIVALENT if within else DIFFERENT if differs else OPEN)
     return words
 
@@ -263,6 +262,6 @@ def _mean_and_error(values: Array) -> tuple[Array, Array, Array]:
 
 
 def _ratio(difference: Array, error: Array) -> Array:
-    """Return difference over error; 0 if the values are equal apart from rounding."""
+    """Return difference divided by error; 0 for a difference of 0, even without error."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(difference == 0, np.where(np.isnan(error), np.nan, 0.0), difference / error)

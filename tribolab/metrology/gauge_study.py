@@ -13,7 +13,7 @@ from tribolab.core.aliases import Array
 from tribolab.core.errors import AnalysisError
 
 _POOLED_ABOVE = 0.25  # p value of the interaction above which it is counted as repeatability
-_CATEGORIES = math.sqrt(2)  # ndc: width of the parts' distribution in 97 % intervals of the gauge
+_CATEGORIES = math.sqrt(2)  # factor of s_parts/s_gauge in the number of distinct categories
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class GaugeStudy:
 
     @property
     def study_variation(self) -> float:
-        """Standard deviation of the measurement over that of all values."""
+        """Ratio of the standard deviation of the measurement to that of all values."""
         return math.sqrt(self.gauge / (self.gauge + self.parts))
 
     @property
@@ -70,7 +70,7 @@ def gauge_study(values: ArrayLike) -> GaugeStudy:
     Raises
     ------
     AnalysisError
-        If the values do not have that shape, or some are missing.
+        If there are fewer than two parts, appraisers or trials, or values are missing.
 
     Notes
     -----

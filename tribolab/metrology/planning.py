@@ -25,9 +25,9 @@ class Pilot:
     within
         Standard deviation of the coefficient along a run.
     memory
-        Its integrated autocorrelation time [s].
+        Integrated autocorrelation time [s] of the coefficient along a run.
     between
-        Standard deviation between runs beyond that due to scatter within runs.
+        Standard deviation between runs, without the contribution of scatter within runs.
     """
 
     within: float
@@ -116,7 +116,10 @@ def runs_for_half_interval(
 
 @functools.lru_cache(maxsize=64)
 def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float64]:
-    """Return the variance, over the true one, that is not exceeded with the given probability."""
+    """Return, by number of runs, the variance ratio not exceeded with the given probability.
+
+    The ratio is that of the estimated to the true variance, or to the variance of the pilot.
+    """
     if pilot_runs is not None:
         chance = 0.5 if assurance is None else assurance
         return np.asarray(special.fdtri(_RUNS - 1, pilot_runs - 1, chance))
@@ -145,7 +148,7 @@ def cheapest_sliding_time(pilot: Pilot, setup_time: float, longest: float) -> fl
 
     Notes
     -----
-    Least of (t_s + T) v(T); for T much longer than the correlation time this is sqrt(t_s 2 tau s^2
+    T minimises (t_s + T) v(T); for T much longer than the correlation time it is sqrt(t_s 2 tau s^2
     / s_b^2).
 
     Examples

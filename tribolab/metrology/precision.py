@@ -10,12 +10,12 @@ from scipy import special
 
 from tribolab.core.aliases import Array
 
-# limit for the difference of two single results (95 %) over the standard deviation: 1.96 sqrt(2)
+# 95 % limit of the difference between two single results, in standard deviations: 1.96 sqrt(2)
 LIMIT = 2.8
 
 
 def reproducibility_deviation(repeatability: float, between: ArrayLike) -> float:
-    """Return s_R, from s_r and the standard deviations between laboratories, mounts or days.
+    """Return the reproducibility s_R, from s_r and the deviations between laboratories or days.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def mandel(means: ArrayLike, deviations: ArrayLike) -> tuple[Array, Array]:
     Parameters
     ----------
     means, deviations
-        Mean and standard deviation of the results of each (laboratory).
+        Mean and standard deviation of the results of each laboratory (laboratory).
 
     Returns
     -------

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 _MIN_POINTS = 4  # fewest points for a straight line with a standard error
-_FARTHEST = 3653  # days, how far ahead a date is predicted
+_FARTHEST = 3653  # days ahead, up to which a date is predicted
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,10 @@ class Due:
     Parameters
     ----------
     date
-        The earlier of both; None if neither is known.
+        The end of the interval or the date predicted from drift, whichever is earlier; None if
+        neither is known.
     reason
-        In words.
+        What determines the date, in words.
     drift
         Drift of the monitored quantity per day; NaN if unknown.
     """

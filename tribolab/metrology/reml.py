@@ -15,7 +15,7 @@ from tribolab.core.errors import AnalysisError
 
 # starting values of the variance ratios, several because the likelihood can have several maxima
 _STARTS = (0.1, 2.0)
-_LARGEST = 1e6
+_LARGEST = 1e6  # upper bound of the variance ratios
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,10 @@ def variance_components(
     AnalysisError
         If no degrees of freedom remain for the variances.
 
-    Notes
-    -----
-    With V = 1 + sum of gamma_j Z_j Z_j', the restricted likelihood is maximised over the ratios of
-    variances gamma_j >= 0, dense; the residual variance and the means follow from them [1]_. For
-    balanced data this is the analysis of variance, if none of its components is negative.
+    Notes ----- With V = 1 + sum of gamma_j Z_j Z_j', the restricted likelihood is maximised over
+    the ratios of variances gamma_j >= 0, with dense matrices; the residual variance and the means
+    follow from them [1]_. For balanced data this is the analysis of variance, if none of its
+    components is negative.
 
     References
     ----------
@@ -104,7 +103,7 @@ def _indicators(levels: ArrayLike) -> Array:
 
 
 def _solve(y: Array, x: Array, parts: Sequence[Array], ratios: Array) -> tuple[float, float, Array]:
-    """Return minus the restricted log-likelihood, residual variance and means, at ratios."""
+    """Return minus the restricted log-likelihood, residual variance and means, for given ratios."""
     covariance = np.eye(y.size)
     for ratio, part in zip(ratios, parts, strict=True):
         covariance += ratio * part

@@ -14,9 +14,9 @@ from tribolab.core.aliases import Array
 
 _MIN_RUNS = 4  # fewest runs per group for a permutation test
 MOST_ROTATED = 40  # most runs of both groups together for a rotation test
-_DRAWS, _FEW_DRAWS = 4999, 1999
-_FEW_LEVEL = 0.005  # significance level from which fewer draws are sufficient
-_EXHAUSTIVE = 5000
+_DRAWS, _FEW_DRAWS = 4999, 1999  # random draws; fewer suffice for levels from _FEW_LEVEL on
+_FEW_LEVEL = 0.005
+_EXHAUSTIVE = 5000  # number of permutations up to which all of them are used
 _MIN_SHARE = 0.8  # share of the significance level that permutations must be able to reach
 _ROUNDING = 1e-9  # relative tolerance, so that rounding does not separate a draw from the data
 
@@ -24,8 +24,8 @@ _ROUNDING = 1e-9  # relative tolerance, so that rounding does not separate a dra
 def permutations_will_do(first: int, second: int, level: float) -> bool:
     """Return whether there are enough permutations of the runs for a significance level.
 
-    Four and four runs have 70 permutations, equal in pairs: possible levels are multiples of 2/70,
-    and the one below 5 % is 2.9 %.
+    Two groups of four runs have 70 permutations, which are equal in pairs. The possible levels are
+    multiples of 2/70, and the largest below 5 % is 2.9 %.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def permutation_test(
         Errors not in the scatter of the runs: signed standard uncertainties, each fully
         correlated between points (term, point).
     scores
-        Differences over their standard errors (point).
+        Differences divided by their standard errors (point).
     level
         Error rate of all points together.
     seed
@@ -97,13 +97,11 @@ def rotation_test(
     p_values, degrees_of_freedom
         p value and degrees of freedom of each point alone (point).
 
-    Notes
-    -----
-    If all runs are from one normal distribution, their deviations from the mean are as likely as
-    any rotation of them in the space of the runs, for any correlation between points. The smallest
-    p of the points (Welch's, with each point's own degrees of freedom) over random rotations is its
-    null distribution [1]_, if the groups scatter alike. P values and intervals are from the same
-    draws, as in `permutation_test`.
+    Notes ----- If all runs are from one normal distribution, their deviations from the mean are as
+    likely as any rotation of them in the space of the runs, for any correlation between points.
+    Random rotations therefore give the null distribution of the smallest p of all points (Welch's,
+    with each point's own degrees of freedom), if both groups have the same scatter [1]_. P values
+    and intervals are from the same draws, as in `permutation_test`.
 
     References
     ----------
@@ -120,7 +118,7 @@ def rotation_test(
 
 
 def _allowed_draws(level: float, draws: int) -> int:
-    """Return how many draws may exceed a difference that is still significant."""
+    """Return the largest number of draws that may exceed a difference that is significant."""
     return math.floor(level * draws * (1 + _ROUNDING))
 
 
@@ -131,7 +129,7 @@ def _centre(values: Array) -> Array:
 
 
 def _choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """Return which runs form the first group in each permutation; the first is as measured."""
+    """Return a mask of the runs in the first group, for each permutation (permutation, run)."""
     if math.comb(first + second, first) <= _EXHAUSTIVE:
         return _all_choices(first, second)
     return _draw_choices(first, second, rng)

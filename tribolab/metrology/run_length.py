@@ -18,8 +18,8 @@ from tribolab.metrology.control_charts import (
     signals_of,
 )
 
-_SERIES, _BLOCK, _MAX_RUN = 4000, 250, 2000
-_SHORT, _MORE = 400, 4  # up to _SHORT points, _MORE times as many series are simulated
+_SERIES, _BLOCK, _MAX_RUN = 4000, 250, 2000  # simulated series, points per step, most points
+_SHORT, _MORE = 400, 4  # for series of up to _SHORT points, _MORE times as many are simulated
 _SEED = 20260101
 
 
@@ -46,7 +46,7 @@ def average_run_length(
     -----
     Simulated, with an error of some 2 %. With an estimated, possibly wrong baseline run lengths
     scatter much more than with a known one, and some charts never signal: the result is the number
-    of points over that of signals, with at most 2000 points per series.
+    of all points divided by that of signals, with at most 2000 points per series.
 
     Examples
     --------
@@ -104,8 +104,8 @@ def _run_lengths(
     while running.size and series.shape[1] < longest:
         # always evaluated from the first point, because some rules have a memory
         start = series.shape[1]
-        place = np.arange(start, start + min(_BLOCK, longest - start))
-        fresh = rng.normal(size=(running.size, place.size)) + shift + drift * (place + 1)
+        point = np.arange(start, start + min(_BLOCK, longest - start))
+        fresh = rng.normal(size=(running.size, point.size)) + shift + drift * (point + 1)
         fresh = (fresh - centre[running, None]) / sigma[running, None]
         series = np.concatenate([series, fresh], axis=1)
         marks = np.any(list(signals_of(series, usual, rules).values()), axis=0)

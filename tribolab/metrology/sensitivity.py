@@ -30,7 +30,7 @@ _OF_FRICTION = (
     "zero_drift",
     "resolution",
 )
-AMBIGUOUS = "zero_or_tilt"  # effect of a changed load if tilt and zero cannot be separated
+AMBIGUOUS = "zero_or_tilt"  # effect of unequal loads if tilt and zero cannot be separated
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,15 @@ class SegmentReadings:
     both_ways
         Whether the coefficient is the mean of a forward and a backward stroke.
     inverse_load_change
-        (1/N_forward - 1/N_backward)/2 of its pair [1/N]; 0 without one.
+        (1/N_forward - 1/N_backward)/2 of the pair of strokes [1/N]; 0 without a pair.
     middle
         Middle of the loop minus the unloaded zero [N].
     zero_known, normal_zero_known
-        Whether the zeros were measured in the run; their errors are then in the noise.
+        Whether the zero of each force was measured in the run; its error is then in the noise.
     drift_known
         Whether the drift of the zero was measured from the loops.
     middle_is
-        Interpretation of the middle of the loops; "" without loops.
+        What the middle of the loops is attributed to: zero or tilt; "" without loops.
     """
 
     mu: np.ndarray

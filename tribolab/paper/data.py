@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from tribolab.figures.subjects.slip import Trace
     from tribolab.records.parts import CurveOutcome, RunOutcome
 
-# Cached, because several figures share the same data and none changes them.
-_KEPT = 64
+_KEPT = 64  # number of data sets kept in memory, because figures share them unchanged
 SURFACES = tuple(xu2026.surfaces)
 ROUGH = tuple(name for name in SURFACES if name != "Smooth")
 

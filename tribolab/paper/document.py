@@ -36,7 +36,7 @@ _SCHEMA_VERSION = "1.1"
 
 
 class StatusMark(NamedTuple):
-    """Mark of a status on the page: colour, sign, word and meaning."""
+    """How the page shows a status: look (colour), sign, word and meaning."""
 
     look: str
     sign: str
@@ -72,7 +72,7 @@ _MARKS = {
     ),
 }
 _BODY = "paper/section.html.j2"
-# key, heading, and the places in the paper ("where a number is printed") that belong to it
+# key and heading of a section of the page, and the sections of the paper whose numbers it shows
 _PARTS = (
     ("theory", "2 Theory of mixed lubrication", ("Sec. 2",)),
     ("setup", "3 Experiment", ("Sec. 3",)),
@@ -96,7 +96,7 @@ _ABOUT = {
     "dry": "The drawing of bonds in the contact is left out.",
     "discussion": "The drawing of a Schallamach wave is left out.",
 }
-# word added to names of quantities that are ambiguous by themselves
+# words added to names of quantities that are ambiguous on their own
 _WORDS = {
     "hertz_contact_width": "2a of a smooth cylinder",
     "contact_area_ratio": "real over nominal area, A/A₀",
@@ -170,7 +170,7 @@ def paper_document(
 
 
 def context_of(document: Json) -> Json:
-    """Return the document with the additional entries that the page needs."""
+    """Return the document with further entries that the templates of the page need."""
     rows = document["numbers"]
     return document | {
         "parts": {
@@ -186,7 +186,7 @@ def context_of(document: Json) -> Json:
 
 
 def _pair_rows(table: pd.DataFrame) -> list[tuple[Json, Published]]:
-    """Return each row with its published number; both are in the same order."""
+    """Return each row of the table with its published number, after a check of their order."""
     pairs = list(zip(rows_of(table), xu2026.published, strict=True))
     for record, known in pairs:
         if (record["quantity"], record["condition"]) != (known.quantity, known.condition):
@@ -210,7 +210,7 @@ def _row(record: Json, known: Published) -> Json:
 
 
 def _difference(record: Json, known: Published) -> str:
-    """Return the difference of a number as text if it is not relative; else ""."""
+    """Return the difference as text for numbers without a relative one; "" for all others."""
     if known.relation.startswith(BOUNDS) and record["computed"]:
         if record["status"] in (REPRODUCED, BY_CONSTRUCTION):
             return "within the bound"

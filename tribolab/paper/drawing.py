@@ -26,7 +26,7 @@ def _listed(parts: Iterable[str]) -> str:
 
 
 def paper_spectra(data: PaperData) -> FigureAndText:
-    """Draw the power spectra that replace those of the paper's surfaces."""
+    """Draw the stand-ins for the power spectra of the paper's surfaces."""
     psds = data.dry("psd")
     text = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.4g} µm, slope {rms_slope(psd):.3g}"
@@ -36,7 +36,7 @@ def paper_spectra(data: PaperData) -> FigureAndText:
 
 
 def scanned_spectra(data: PaperData) -> FigureAndText:
-    """Draw the spectra found from the simulated profiles."""
+    """Draw the power spectra computed from the simulated profiles."""
     psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
     text = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"
@@ -46,7 +46,7 @@ def scanned_spectra(data: PaperData) -> FigureAndText:
 
 
 def paper_contact_area(data: PaperData) -> FigureAndText:
-    """Draw the contact area ratio A/A0 over pressure, without adhesion."""
+    """Draw the contact area ratio A/A0 against pressure, without adhesion."""
     loads = data.dry("loads")
     text = _listed(
         f"{name}: A/A0 {float(contact.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
@@ -58,7 +58,7 @@ def paper_contact_area(data: PaperData) -> FigureAndText:
 
 
 def paper_effective_work(data: PaperData) -> FigureAndText:
-    """Draw the effective work of adhesion gamma_eff/gamma_0 over magnification."""
+    """Draw the effective work of adhesion gamma_eff/gamma_0 against magnification."""
     works = data.dry("effective_work")
     text = _listed(
         f"{name}: "
@@ -77,7 +77,7 @@ def _ends(line: xr.DataArray) -> str:
 
 
 def paper_adhesive_area(data: PaperData) -> FigureAndText:
-    """Draw the contact area ratio A/A0 over pressure, with adhesion."""
+    """Draw the contact area ratio A/A0 against pressure, with adhesion."""
     loads = data.dry("loads")
     text = _listed(
         f"{name}: "
@@ -103,20 +103,20 @@ def _friction_of(curves: Iterable[xr.Dataset]) -> str:
 
 
 def dry_friction(data: PaperData) -> FigureAndText:
-    """Draw the dry friction coefficient over speed."""
+    """Draw the dry friction coefficient against speed."""
     measured = [data.measured(name, "dry") for name in SURFACES]
     return plot.stribeck(measured, surfaces=SURFACES, errors="std"), _friction_of(measured)
 
 
 def paper_modulus(data: PaperData) -> FigureAndText:
-    """Draw the rubber modulus that replaces the paper's."""
+    """Draw the stand-in for the paper's rubber modulus."""
     table = modulus_table()
     ends = (f"{float(table.storage_modulus[end]):.3g} Pa" for end in (0, -1))
     return plot.modulus(table), f"Storage modulus from {' to '.join(ends)}."
 
 
 def paper_viscoelastic(data: PaperData) -> FigureAndText:
-    """Draw the viscoelastic friction coefficient over speed."""
+    """Draw the viscoelastic friction coefficient against speed."""
     rubbers = data.dry("rubber")
     rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
     text = _listed(
@@ -215,7 +215,7 @@ def _model_at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
 
 
 def paper_shear_stress(data: PaperData) -> FigureAndText:
-    """Draw the shear stress sigma_f over load, as fitted and corrected for adhesion."""
+    """Draw the shear stress sigma_f against load, as fitted and corrected for adhesion."""
     text = _listed(
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
         f"{fit['shear_stress_Pa'] / 1e6:.3g} MPa, "
@@ -240,7 +240,7 @@ def smooth_and_theory(data: PaperData) -> FigureAndText:
 
 
 def separation(data: PaperData) -> FigureAndText:
-    """Draw the contact pressure over the mean separation."""
+    """Draw the contact pressure against the mean separation."""
     tables = data.dry("separation")
     text = _listed(
         f"{name}: falls by a factor e in "
@@ -252,7 +252,7 @@ def separation(data: PaperData) -> FigureAndText:
 
 
 def factors(data: PaperData) -> FigureAndText:
-    """Draw the flow and friction factors over the mean separation."""
+    """Draw the flow and friction factors against the mean separation."""
     factors = {name: data.read("wet", name, "factors") for name in SURFACES}
     closed = [
         d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in factors.values()
@@ -262,7 +262,7 @@ def factors(data: PaperData) -> FigureAndText:
 
 
 def paper_friction_factor_effect(data: PaperData) -> FigureAndText:
-    """Draw friction over speed at the highest load, with and without friction factors."""
+    """Draw friction against speed at the highest load, with and without friction factors."""
     force = data.forces[-1]
     pairs = {name: data.model(name, force) for name in ROUGH}
     text = _listed(

@@ -1,4 +1,4 @@
-"""Effect of the replacement spectra's Hurst exponents above 1 on slope and contact."""
+"""Effect of Hurst exponents above 1, in the stand-in spectra, on slope and contact."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ENDLESS = 1e30  # 1/m, practically infinite wavenumber
 
 @dataclass(frozen=True)
 class SteepSpectrum:
-    """Replacement spectrum with a Hurst exponent above 1.
+    """Stand-in spectrum with a Hurst exponent above 1.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class SteepSpectrum:
 
 
 def steep_spectra() -> list[Json]:
-    """Return a record for each replacement spectrum with H above 1, for the page.
+    """Return a record for each stand-in spectrum with H above 1, for the page.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def _judged(name: str, spectrum: SelfAffine) -> SteepSpectrum:
 
 
 def _half(spectrum: SelfAffine, whole: float) -> float:
-    """Return the wavenumber [1/m] up to which half of the mean square slope is reached."""
+    """Return the wavenumber [1/m] below which half of the mean square slope arises."""
 
     def missing(log_q: float) -> float:
         return moment(replace(spectrum, high=math.exp(log_q)), _SLOPE) / whole - 0.5

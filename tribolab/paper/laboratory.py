@@ -1,4 +1,4 @@
-"""Virtual rig that replaces the paper's laboratory, and the analysis of its files."""
+"""Simulation of the paper's measurements by the virtual rig, and the analysis of its files."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class Reproduction:
     Parameters
     ----------
     folder
-        The results.
+        Folder of the results.
     table
         Published and computed numbers, as in ``paper.csv``.
     document
@@ -55,7 +55,7 @@ def reproduce(
     progress: Progress | None = None,
     laboratory: lab.Laboratory | None = None,
 ) -> Reproduction:
-    """Return figures and numbers of the reference paper, reproduced, and write a web page.
+    """Reproduce figures and numbers of the reference paper, write a web page, and return them.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import CurveOutcome
 
 GroupsAndRows = tuple[dict[str, "xr.Dataset"], list[Row]]  # data by group, table rows
-_LOWEST_WAVENUMBER = 423.0  # 1/m, lowest wavenumber of the replacement spectra
+_LOWEST_WAVENUMBER = 423.0  # 1/m, lowest wavenumber of the stand-in spectra
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class PaperTask:
     curves
         Measured curves of the surface in glycerol.
     scans
-        The surface's profiles.
+        Surface with its simulated profiles.
     """
 
     kind: str
@@ -81,7 +81,7 @@ def _root(task: PaperTask) -> xr.Dataset:
 
 
 def _origin(task: PaperTask) -> dict[str, str]:
-    """Return the sources of a task's result: files, or the published constants only."""
+    """Return attributes that name the sources of a task's result: files or published constants."""
     if task.scans is not None:
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
         return source_attributes(sources_of_surface(task.scans)) | {
@@ -101,7 +101,7 @@ def _dry(task: PaperTask) -> GroupsAndRows:
 
 
 def _spectrum(task: PaperTask) -> GroupsAndRows:
-    """Return the spectrum of the simulated profiles, extrapolated as usual."""
+    """Return the spectrum of the simulated profiles, extrapolated as in a campaign."""
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
     checked = usable_scans(task.scans)
@@ -121,7 +121,7 @@ def _wet(task: PaperTask) -> GroupsAndRows:
 
 
 def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> Row:
-    """Return the shear stress fitted to a simulated curve in the way of the paper's authors."""
+    """Return a table row: the shear stress fitted to a simulated curve as in the paper."""
     fit = fit_shear_stress(
         read_netcdf(task.folder / curve.data_file),
         xu2026.contact,

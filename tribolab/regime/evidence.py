@@ -17,12 +17,10 @@ from tribolab.regime.words import REVERSED, SAW, SINE, friction_text, percent_te
 if TYPE_CHECKING:
     from tribolab.regime.model import Mode
 
-_MAX_SPEED_RATIO = (
-    10.0  # ratio of speeds above which the ends of plateau and boundary regime differ
-)
+_MAX_SPEED_RATIO = 10.0  # above this, the plateau and the boundary regime end at different speeds
 _MIN_SLIP_RATIO = 2.0  # least ratio of uniform-slip friction to measured friction
 _MIN_DROP_RATIO = 1.5  # least ratio of the drops at different speeds
-_MIN_FALL = 0.10  # relative; smaller decreases of friction between two speeds are ignored
+_MIN_FALL = 0.10  # relative decrease of friction between two speeds, below which it is ignored
 _PLATEAU_END = 0.8  # share of the plateau's friction below which the plateau has ended
 
 

@@ -8,7 +8,7 @@ from scipy import special
 
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 
-SUFFICIENT = 0.10  # rms misfit over maximum friction, below which a model is sufficient
+SUFFICIENT = 0.10  # rms misfit relative to maximum friction, below which a model is sufficient
 _CHANCE = 0.05  # p value below which a misfit is significant
 _FITTED = 1  # number of fitted parameters, the shear stress
 
@@ -58,18 +58,19 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
         return numbers
     speed = measured["sliding_speed"].values
     errors = PointErrors(own.values.astype(float), shared_errors(measured, speed))
-    place = np.log(model["sliding_speed"].values)
+    log_speed = np.log(model["sliding_speed"].values)
     moved = list(model["model_part"].values) if "model_part" in model else []
     if (relative := float(model.attrs.get("abscissa_error", 0.0))) > 0:
-        moved.append(relative * np.gradient(model["friction_coefficient"].values, place))
+        moved.append(relative * np.gradient(model["friction_coefficient"].values, log_speed))
     for part in moved:
-        errors = errors.with_part(np.interp(np.log(speed), place, part))
+        errors = errors.with_part(np.interp(np.log(speed), log_speed, part))
     errors = errors.at(fine)
     white = errors.whitened(off[fine])
     freedom = int(fine.sum()) - _FITTED
     numbers["model_misfit_p_value"] = float(special.chdtrc(freedom, white @ white))
     if "friction_per_shear_stress" in model:
-        solid = np.interp(np.log(speed), place, model["friction_per_shear_stress"].values)[fine]
+        solid = model["friction_per_shear_stress"].values
+        solid = np.interp(np.log(speed), log_speed, solid)[fine]
     else:
         solid = np.zeros(fine.sum())
     numbers["model_misfit_resolved"] = _error_bound(errors, solid) / float(highest)
@@ -77,7 +78,7 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
 
 
 def _error_bound(errors: PointErrors, solid: np.ndarray) -> float:
-    """Return the upper 95 % bound of the rms of the errors that remain after fitting a level."""
+    """Return the 95 % upper bound of the rms error that remains after fitting the shear stress."""
     covariance = errors.covariance
     if np.any(solid > 0):
         taken = errors.whitened(solid)

@@ -7,7 +7,7 @@ import xarray as xr
 
 _BOUNDARY, _MIXED, _HYDRODYNAMIC = "boundary", "mixed", "hydrodynamic"
 _FLAT = 0.15  # relative change of friction up to which a curve is a plateau
-_SIGMAS = 3.0  # the same in standard errors, whichever is larger
+_SIGMAS = 3.0  # the same change in standard errors; the larger of both limits applies
 _RISE = 1.2  # ratio of friction to its minimum from which the regime is hydrodynamic
 _CARRIED = 0.9  # share of the load carried by solid or fluid that decides the regime
 
@@ -62,7 +62,7 @@ def measured_regimes(curve: xr.Dataset) -> np.ndarray:
 
 
 def model_regimes(curve: xr.Dataset) -> np.ndarray:
-    """Return the regime at each speed of a computed curve, from the load shares of solid and fluid.
+    """Return the regime at each speed of a computed curve, from the loads on solid and fluid.
 
     Parameters
     ----------

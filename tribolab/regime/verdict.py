@@ -29,7 +29,7 @@ from tribolab.units.stamping import stamp
 
 @dataclass(frozen=True)
 class SlidingMode:
-    """Sliding mode of a contact: the verdict and its evidence.
+    """Sliding mode of a contact, as a verdict with its evidence.
 
     Parameters
     ----------
@@ -93,11 +93,11 @@ def sliding_mode(
         Model curve of `stribeck_curve` over ``sliding_speed``, with the fitted shear stress; None
         without a model (dry contacts have none).
     slip
-        Stick-slip over speed, from `stick_slip_curve`; None if not looked for.
+        Stick-slip at each speed, from `stick_slip_curve`; None if it was not looked for.
     known
         Further properties of the contact; see `Mode`.
     band
-        From `model_uncertainty`: band of the model.
+        Uncertainty band of the model, from `model_uncertainty`.
     name
         Name of the contact in the text.
 
@@ -196,15 +196,16 @@ def _curve(
     if fluid:
         data["regime"] = "sliding_speed", measured_regimes(measured)
     if model is not None and speed.size:
-        place = np.log(model["sliding_speed"].values)
-        mu = np.interp(np.log(speed), place, model["friction_coefficient"].values, np.nan, np.nan)
+        log_speed = np.log(model["sliding_speed"].values)
+        mu = model["friction_coefficient"].values
+        mu = np.interp(np.log(speed), log_speed, mu, np.nan, np.nan)
         data["friction_coefficient_model"] = "sliding_speed", mu
         if "solid_load_share" in model:
-            near = np.abs(place[None, :] - np.log(speed)[:, None]).argmin(axis=1)
+            near = np.abs(log_speed[None, :] - np.log(speed)[:, None]).argmin(axis=1)
             data["model_regime"] = "sliding_speed", model_regimes(model)[near]
     if slip is not None and slip.sizes.get("sliding_speed", 0):
-        place = np.log(slip["sliding_speed"].values)
-        near = np.abs(place[None, :] - np.log(speed)[:, None])
+        log_speed = np.log(slip["sliding_speed"].values)
+        near = np.abs(log_speed[None, :] - np.log(speed)[:, None])
         at, apart = near.argmin(axis=1), near.min(axis=1)
         waveform = slip["waveform"].values[at].astype(object)
         waveform[apart > 0.1] = ""
@@ -221,13 +222,13 @@ def _curve(
 
 
 def _count_in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
-    """Return at how many measured speeds friction lies within the model's 95 % band."""
+    """Return the number of speeds with friction in the model's 95 % band, and with a band."""
     if band is None:
         return {"speeds_in_band": float("nan"), "speeds_with_band": float("nan")}
-    place = np.log(band["sliding_speed"].values)
+    log_speed = np.log(band["sliding_speed"].values)
     at = np.log(measured["sliding_speed"].values)
     low, high = (
-        np.interp(at, place, band[f"friction_coefficient_{end}"].values, np.nan, np.nan)
+        np.interp(at, log_speed, band[f"friction_coefficient_{end}"].values, np.nan, np.nan)
         for end in ("low", "high")
     )
     mu = measured["friction_coefficient"].values
@@ -264,10 +265,10 @@ def _numbers(
     if "regime" in curve:
         numbers["boundary_end_m_s"] = end_of_boundary(speed, curve["regime"].values)
     if model is not None:
-        place = model["sliding_speed"].values
-        numbers["model_lowest_m_s"] = float(place.min())
+        model_speed = model["sliding_speed"].values
+        numbers["model_lowest_m_s"] = float(model_speed.min())
         if "solid_load_share" in model:
-            numbers["model_boundary_end_m_s"] = end_of_boundary(place, model_regimes(model))
+            numbers["model_boundary_end_m_s"] = end_of_boundary(model_speed, model_regimes(model))
         off = curve["friction_coefficient_model"].values - mu
         numbers |= misfit_numbers(measured, model, off)
     stress, area, pressure = known.rough_shear_stress, known.area_ratio, known.pressure

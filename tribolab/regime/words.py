@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 _STEADY, SAW, SINE, REVERSED = CLASSES
 _MAX_WAVELENGTH = 0.5e-3  # m; longer waves may be turns of a track or the pitch of a screw
-_MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # over which a wavelength counts as constant
+# a wavelength is constant if it varies by less than 1.15 while speeds differ by 1.5 or more
+_MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15
 
 
 def friction_text(value: float) -> str:

@@ -51,7 +51,7 @@ def viscoelastic_friction(
     psd
         Power spectrum with ``psd_2d`` [m4] (wavenumber).
     modulus
-        Complex modulus over angular frequency, see `tribolab.rubber.modulus`.
+        Complex modulus as a function of angular frequency, see `tribolab.rubber.modulus`.
     poisson_ratio
         Poisson's ratio of the rubber [1].
     complete_contact
@@ -173,10 +173,10 @@ def solve_hysteresis(
     speed, over
         Sliding speeds and pressures.
     nodes, excited
-        Wavenumbers; and the spectra there, each with the modulus E* [Pa] over angular frequency
-        of the contact that it deforms.
+        Wavenumbers; and one or two pairs of a spectrum at these wavenumbers and a function that
+        returns E* [Pa] of the contact that it deforms, at angular frequencies [rad/s].
     complete_contact, growth, area
-        Whether contact is complete; increase by adhesion; theory of the area.
+        Whether contact is complete; ratio of P with to P without adhesion; theory of the area.
     """
     stored, lost = np.zeros(()), np.zeros(())
     for heights, modulus in excited:
@@ -209,7 +209,7 @@ def _heating(
 
 
 def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
-    """Return P(q) with adhesion over P(q) without, at rest (pressures, 1, wavenumber)."""
+    """Return the ratio of P(q) with to P(q) without adhesion at rest (pressures, 1, wavenumber)."""
     q, spectrum = refine_nodes(*spectrum_arrays(psd), PER_DECADE)
     bound = adhesion(over.values.ravel(), psd, stiffness, work)
     nodes = bound["wavenumber"].values

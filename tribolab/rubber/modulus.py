@@ -1,4 +1,4 @@
-"""Complex modulus of rubber over frequency: fractional Zener model or measured table."""
+"""Complex modulus of rubber as a function of frequency: fractional Zener model or table."""
 
 from __future__ import annotations
 
@@ -75,8 +75,8 @@ class FractionalZener:
         return np.where(omega < 0, np.conj(modulus), modulus)
 
 
-# PDMS at 20 C as a substitute: the paper shows its modulus only as a plot, which is interpolated
-# between rubber and glass. Plateaus as stated there; a glass-transition frequency of about 1e9 Hz
+# Substitute for PDMS at 20 C: Xu et al. (2026) show its modulus only as a plot. Plateaus as they
+# state, with an interpolation between rubber and glass; a glass-transition frequency of 1e9 Hz
 # and an exponent of one half are usual for PDMS networks. Valid for orders of magnitude only.
 PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
 
@@ -96,7 +96,7 @@ class TabulatedModulus:
     storage, loss
         E' and E'' [Pa] (n).
     remarks
-        Assumptions made in reading it.
+        Assumptions made when its file was read.
     """
 
     angular_frequency: np.ndarray = field(repr=False)
@@ -135,7 +135,7 @@ class TabulatedModulus:
     def continued(self) -> Modulus:
         """Return the modulus extrapolated by the power laws of the table's first and last decade.
 
-        The difference between both results shows the effect of the unknown frequencies.
+        Results that differ with this modulus depend on frequencies outside the table.
         """
         return _ExtrapolatedModulus(self)
 
@@ -177,7 +177,7 @@ def read_modulus(
     sheet: str | None = None,
     unit: str | None = None,
 ) -> TabulatedModulus:
-    r"""Return the storage and loss modulus over frequency, from a file of a rheometer or DMA.
+    r"""Return a table of storage and loss modulus, read from a file of a rheometer or DMA.
 
     Parameters
     ----------

@@ -98,7 +98,7 @@ def modulus_at(modulus: Shiftable, temperature: str | float, law: WilliamsLandel
     Returns
     -------
     FractionalZener, TabulatedModulus or PronySeries
-        Same type as `modulus`. A table keeps its length, at other frequencies.
+        Same type as `modulus`; a table has the same moduli at shifted frequencies.
 
     Raises
     ------
@@ -160,9 +160,9 @@ def flash_temperature(
 
     Notes
     -----
-    ``dT = 2 q a/(K sqrt(pi (1.273 + Pe)))``, q = sigma v the heat, Pe = v a/(2 kappa): a round,
-    uniform source in a steady state [1]_. A spot at rest has q a/K, a fast one 2 q/K sqrt(2 kappa
-    a/(pi v)).
+    ``dT = 2 q a/(K sqrt(pi (1.273 + Pe)))`` with the heat flux q = sigma v and Pe = v a/(2 kappa),
+    for a round, uniform source in a steady state [1]_. The limits are q a/K for a slow spot and
+    2 q/K sqrt(2 kappa a/(pi v)) for a fast one.
 
     References
     ----------

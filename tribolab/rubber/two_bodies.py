@@ -21,12 +21,12 @@ from tribolab.units.stamping import stamp
 
 @dataclass(frozen=True, eq=False)
 class RubberBody:
-    """One of the two bodies: its modulus, Poisson's ratio and roughness.
+    """One of two rubber bodies in contact: its modulus, Poisson's ratio and roughness.
 
     Parameters
     ----------
     modulus
-        Complex modulus over angular frequency, see `tribolab.rubber.modulus`.
+        Complex modulus as a function of angular frequency, see `tribolab.rubber.modulus`.
     psd
         Power spectrum of its surface with ``psd_2d`` [m4] (wavenumber); None if smooth.
     poisson_ratio
@@ -72,12 +72,12 @@ def two_body_friction(
     Returns
     -------
     xarray.Dataset
-        As of `viscoelastic_friction`.
+        As for `viscoelastic_friction`.
 
     Notes
     -----
-    The roughness of a body moves over the other one and excites that only: its waves deform their
-    own body statically and the other at ``omega = q v cos(phi)``. The modulus of this contact is
+    The roughness of each body slides over the other body: its waves deform their own body
+    statically, and the other one at ``omega = q v cos(phi)``. The modulus of this contact is
     ``1/E*(omega) = (1 - nu_1^2)/E_1(0) + (1 - nu_2^2)/E_2(omega)`` for the roughness of body 1, and
     vice versa. Loss and stored energy of both spectra add up; P(q) is that of both together.
 

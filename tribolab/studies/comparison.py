@@ -1,4 +1,4 @@
-"""Comparison of the numbers in the paper with computed ones."""
+"""Comparison of the numbers printed in the paper with computed ones."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
     Returns
     -------
     pandas.DataFrame
-        A row per published number: quantity, surface, condition, published (text with unit),
+        A row for each published number: quantity, surface, condition, published (text with unit),
         computed (in the same unit), relative_difference, tolerance, status (reproduced | by
         construction | within a wide tolerance | differs | published value inconsistent |
-        measured, not computed) and a note. The three numbers are missing for quantities that cannot
-        be computed, and the relative difference for bounds.
+        measured, not computed) and a note. Quantities that cannot be computed have no computed
+        value, difference and tolerance; bounds have no relative difference.
 
     Raises
     ------

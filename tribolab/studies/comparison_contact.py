@@ -39,7 +39,7 @@ def _rms_slope(row: Published, theory: Theory) -> Computed:
     return Computed(theory.slope(row.surface), 0.005, given=_SPECTRUM_HAS_IT)
 
 
-# quantities that served to fit an input: see `tribolab.studies.xu2026` on the spectra
+# reasons why numbers agree by construction; on the spectra see `tribolab.studies.xu2026`
 _SPECTRUM_HAS_IT = "the stand-in spectrum was made to have it"
 _EXPONENT = "the stand-in's exponent H was chosen for the areas with adhesion"
 _PRESSURE = "its pressure is not printed, and 0.1 MPa was chosen for the areas without adhesion"
@@ -81,7 +81,7 @@ def _enhancement(row: Published, theory: Theory) -> Computed:
 def _viscoelastic(row: Published, theory: Theory) -> Computed:
     by_surface = theory.viscoelastic_friction()
     note = ", ".join(f"{name} {value:.2g}" for name, value in by_surface.items())
-    # shown by cutting off the spectrum: 86 % of the largest value comes from q > 1e7 1/m
+    # found by cutting off the spectrum: 86 % of the largest value is due to q > 1e7 1/m
     note = (
         f"stand-in modulus, up to 1 cm/s: {note}; in complete contact waves shorter than a "
         "micrometre count in full, so the loss modulus at 1e5 to 1e8 rad/s decides, of which the "
@@ -157,7 +157,7 @@ def _own_half_width(row: Published) -> Own:
 
 
 def _area_ratio(surface: str, above: str, below: str) -> tuple[float, float, str]:
-    """Return the ratio of two published areas as a range, as they are rounded."""
+    """Return the range of the ratio of two published areas due to their rounding, and a text."""
     p = "0.042 MPa; "
     first, second = (
         find_published(xu2026.published, "contact_area_ratio", surface, p + which)

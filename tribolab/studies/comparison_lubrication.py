@@ -74,7 +74,7 @@ COMPUTE_LUBRICATION: dict[str, Callable[[Published, Theory], Computed | Measured
 
 
 def _own_stress(row: Published) -> Own | None:
-    """Return the shear stress of Sb-R by that of Sb-S and the printed ratio, which may be wrong."""
+    """Return the shear stress of Sb-R that follows from that of Sb-S and the printed ratio."""
     if row.surface != _ROUGH:
         return None
     ratio = find_published(xu2026.published, "corrected_shear_stress_ratio", "Sb-R / Sb-S")
@@ -90,7 +90,7 @@ def _own_stress(row: Published) -> Own | None:
 
 
 def _own_ratio(row: Published) -> Own:
-    """Return the ratio at the load at which the paper's own numbers differ most from it."""
+    """Return the ratio of the paper's own numbers, at the load where it differs most from print."""
     low, high = _growth_ratio()
     every = []
     for load in _loads():
@@ -122,7 +122,7 @@ def _loads() -> list[str]:
 
 
 def _growth_ratio() -> tuple[float, float]:
-    """Return the ratio of the area increases of Sb-R and Sb-S by adhesion, as a range."""
+    """Return the range of the ratio of area increases by adhesion, of Sb-R to Sb-S."""
     areas = {
         (surface, which): _rounding_range(
             find_published(xu2026.published, "contact_area_ratio", surface, f"0.1 MPa; {which}")
@@ -139,7 +139,7 @@ def _growth_ratio() -> tuple[float, float]:
 
 
 def _rounding_range(row: Published) -> tuple[float, float]:
-    """Return the range of values that are rounded to the printed one [SI]."""
+    """Return the range [SI] of the values whose rounding gives the printed number."""
     low, high = row.ends
     return low - row.last_digit / 2, high + row.last_digit / 2
 

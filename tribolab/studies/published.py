@@ -23,7 +23,7 @@ class Published:
     quantity, surface, condition
         Quantity, surface and condition of the value.
     text
-        As printed: a number, or words and numbers such as ``"about 8 %"``, ``"1.75 to 1.95"``.
+        Printed text: a number, or words and numbers such as ``"about 8 %"``, ``"1.75 to 1.95"``.
     unit
         Unit of the numbers in the text.
     where
@@ -69,7 +69,7 @@ class Published:
 
     @property
     def si(self) -> float:
-        """Number in SI, for a range its middle."""
+        """The number in SI; for a printed range, its middle."""
         return sum(self.ends) / 2
 
     @property
@@ -118,7 +118,7 @@ def read_published(path: str | Path) -> tuple[Published, ...]:
 def find_published(
     table: tuple[Published, ...], quantity: str, surface: str, condition: str = ""
 ) -> Published:
-    """Return the published number with given quantity, surface, and part of its condition.
+    """Return the published number of a quantity and surface whose condition contains a text.
 
     Raises
     ------

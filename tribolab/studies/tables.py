@@ -9,14 +9,14 @@ from tribolab.studies import xu2026
 from tribolab.units.stamping import labelled, stamp
 
 SurfaceGroups = dict[str, xr.Dataset]
-# Work of adhesion [J/m2] as the paper rounds and uses it.
+# Work of adhesion [J/m2] by medium, as rounded and used in the paper.
 MEDIA = {row.condition: row.si for row in xu2026.published if row.quantity == "work_of_adhesion"}
 _PROFILE_SPEEDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # m/s, speeds of the profiles in App. B
 _PRESSURES = np.geomspace(1e-3, 1.0, 46) * 1e6  # Pa
-# m/s, rounded so that speeds equal except for the last digit appear once
+# m/s, rounded so that speeds which differ only by rounding appear once
 _SPEEDS = np.unique([*(float(f"{v:.3g}") for v in np.geomspace(1e-9, 1e-1, 33)), *xu2026.SPEEDS])
 _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # in units of h_rms
-_MAX_PRESSED = 0.3  # pressures up to this share of E* are shown
+_MAX_PRESSED = 0.3  # largest pressure that is shown, as a share of E*
 
 
 def dry_contact(name: str) -> SurfaceGroups:
@@ -78,7 +78,7 @@ def dry_contact(name: str) -> SurfaceGroups:
 
 
 def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
-    """Return adhesion at zero pressure, at the loads and on a grid, all solved together."""
+    """Return adhesion on a grid of pressures, at zero pressure and at the loads."""
     # imported late for a quick start
     from tribolab.contact.adhesive_contact import adhesion
     from tribolab.contact.hertz import hertz_mean_pressure
@@ -97,14 +97,14 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
     parts = [
         xr.concat(both, media, combine_attrs="drop_conflicts") for both in (over, rest, loaded)
     ]
-    # pressures as dimension, so that loads keep their order and name
+    # the dim is renamed from pressure to load, so that results are by load
     loads = parts[2].rename(pressure="load").assign_coords(load=forces / xu2026.contact.length)
     loads = loads.assign(pressure=("load", at_loads), normal_force=("load", forces))
     return stamp(parts[0]), stamp(parts[1]), stamp(loads)
 
 
 def modulus_table() -> xr.Dataset:
-    """Return the storage and loss modulus over frequency that replace the paper's rubber."""
+    """Return storage and loss modulus of the stand-in for the paper's rubber, by frequency."""
     # imported late for a quick start
     from tribolab.rubber.modulus import PDMS_STAND_IN
 
@@ -129,7 +129,8 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
     -------
     dict
         ``curve_<force>N`` over the sliding speed, with the shear stress that the paper fitted
-        at that force (Smooth: that of the lowest); ``profiles`` at the lowest force; ``factors``.
+        at that force (for Smooth, that of the lowest force); ``profiles`` at the lowest force;
+        ``factors``.
     """
     # imported late for a quick start
     from tribolab.lubrication.factors import flow_factors

@@ -1,4 +1,4 @@
-"""How many published numbers were reproduced, in words."""
+"""Number of published numbers with each status, as data and as text."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ STUDY_STATUSES = tuple(_WORDS)
 
 
 def count_statuses(table: pd.DataFrame) -> dict[str, int]:
-    """Return how many numbers have each status, in the order of the text.
+    """Return the number of published numbers with each status, in the order of the text.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def count_statuses(table: pd.DataFrame) -> dict[str, int]:
 
 
 def tell_statuses(table: pd.DataFrame) -> str:
-    """Return a text on how many numbers have each status, and on those with wide tolerances.
+    """Return a text with the number of published numbers by status, and the wide tolerances.
 
     Parameters
     ----------

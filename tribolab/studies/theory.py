@@ -1,4 +1,4 @@
-"""Theoretical values of the reference system; each is computed only once."""
+"""Theoretical values for the reference system; slow calculations are cached."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _OTHER_PRESSURE = 1e5  # Pa, pressure of Sec. 7
 
 
 def _stated_number(pattern: re.Pattern[str], row: Published) -> float:
-    """Return the number that the text of a condition contains."""
+    """Return the number in the text of a row's condition that matches a pattern."""
     match = pattern.search(row.condition)
     if match is None:
         raise AnalysisError(
@@ -46,7 +46,7 @@ def _stated_number(pattern: re.Pattern[str], row: Published) -> float:
 class Theory:
     """Theory of the reference system: Hertz, JKR, Persson, adhesion, rubber, lubrication.
 
-    Surface and condition of a row of published numbers select the value.
+    Methods take a row of the published numbers: its surface and condition select the value.
     """
 
     media = ("dry", "glycerol")
@@ -61,7 +61,7 @@ class Theory:
         self._slow = functools.cache(self._boundary)
 
     def load(self, row: Published) -> float:
-        """Return the load [N/m] of a condition, also if the paper states a pressure."""
+        """Return the load [N/m] of a condition, even if the paper states a pressure instead."""
         if match := _LOAD.search(row.condition):
             return float(match[1])
         if match := _PRESSURE.search(row.condition):
@@ -84,7 +84,7 @@ class Theory:
         return float(hertz_mean_pressure(self.load(row), self._contact))
 
     def medium(self, row: Published) -> str:
-        """Return the medium of a condition with adhesion; "" without one."""
+        """Return the medium of a condition with adhesion; "" for a condition without."""
         if "no adhesion" in row.condition:
             return ""
         return next((medium for medium in self.media if medium in row.condition), "")
@@ -130,7 +130,7 @@ class Theory:
         return float(areas[np.argmin(np.abs(self._pressures - self.pressure(row)))])
 
     def enhancement(self, surface: str, medium: str) -> list[float]:
-        """Return the contact area with adhesion over that without, at each load."""
+        """Return the ratio of the contact area with adhesion to that without, at each load."""
         return self._adhesive(surface, medium)[1][:-1].tolist()
 
     def macroscopic_work(self, surface: str, medium: str) -> float:
@@ -162,7 +162,7 @@ class Theory:
         return table.rms_roughness / table.decay_length
 
     def flow_stops(self, level: float) -> list[float]:
-        """Return the mean separation over h_rms at which phi_p falls below a level, by surface."""
+        """Return, by surface, the mean separation in h_rms below which phi_p is below a level."""
         stops = []
         for name in xu2026.surfaces:
             factors = flow_factors(xu2026.psd(name))
@@ -178,7 +178,7 @@ class Theory:
         return float(np.exp(np.interp(-share, -friction, np.log(speed))))
 
     def _published_work(self, medium: str) -> float:
-        """Return the work of adhesion [J/m2] as the paper rounds and uses it."""
+        """Return the work of adhesion [J/m2] as rounded and used in the paper."""
         return next(
             row.si
             for row in xu2026.published
@@ -195,7 +195,7 @@ class Theory:
         return float(line.max_pressure), float(line.contact_width)
 
     def _boundary(self, surface: str, load: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return low speeds [m/s], with friction there relative to dry friction."""
+        """Return low speeds [m/s], and the ratio of friction at these speeds to dry friction."""
         speed = np.append(0.0, np.geomspace(1e-11, 1e-6, 21))
         stress = dict(xu2026.surface(surface).shear_stress)[load * self._contact.length]
         eta = xu2026.system.viscosity

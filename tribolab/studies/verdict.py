@@ -4,9 +4,9 @@ A printed number is called inconsistent only if a power of ten or a reciprocal t
 computed one, if other numbers of the paper exclude it, or if the paper's own inputs give a
 different value in closed form.
 
-Agreement is not always a test. An input, a number to which an input was fitted, or one that follows
-from these agrees *by construction*. A number that needs a tolerance above `NARROW` agrees *within a
-wide tolerance*. Only the others are called reproduced.
+Agreement is not always a test. A number that is an input, to which an input was fitted, or that
+follows from such numbers agrees *by construction*. A number that needs a tolerance above `NARROW`
+agrees *within a wide tolerance*. Only the others are called reproduced.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ INCONSISTENT = "published value inconsistent"
 MEASURED = "measured, not computed"
 
 NARROW = 0.01  # relative tolerance above which agreement is called wide
-_COARSE = 0.05  # relative half of the last digit, from which a printed number counts as imprecise
+_COARSE = 0.05  # relative rounding error above which a printed number is treated as imprecise
 
 
 class Computed(NamedTuple):
@@ -35,9 +35,9 @@ class Computed(NamedTuple):
     tolerance: float  # relative tolerance
     note: str = ""
     exact: bool = False  # closed form, which must agree to the printed digits
-    low: float = math.nan  # lower end of a range, if one printed number summarises several
+    low: float = math.nan  # ends of a range, if one printed number summarises several
     high: float = math.nan
-    given: str = ""  # reason if it agrees because an input was fitted to it
+    given: str = ""  # reason why the number agrees by construction; "" if it does not
 
 
 class Measured(NamedTuple):
@@ -54,7 +54,7 @@ class Own(NamedTuple):
     words: str
 
 
-BOUNDS = (">", "at most", "below")  # words that make a number a bound
+BOUNDS = (">", "at most", "below")  # words before a number that is a bound
 
 
 class Verdict(NamedTuple):
@@ -65,7 +65,7 @@ class Verdict(NamedTuple):
 
 
 def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = None) -> Verdict:
-    """Return the verdict on a published number, from the computed one and the paper's others.
+    """Return the verdict on a published number, from theory and the paper's other numbers.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def room_text(tolerance: float) -> str:
 
 
 def _grade(row: Published, computed: Computed) -> str:
-    """Return how well a number agrees."""
+    """Return the status of a number that agrees: reproduced, by construction or widely."""
     if computed.given:
         return BY_CONSTRUCTION
     printed = row.last_digit / 2 / abs(row.si) if row.si else 0.0

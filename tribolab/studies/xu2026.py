@@ -89,7 +89,7 @@ class Profilometer:
     Parameters
     ----------
     tip_radius, pitch, scan_length
-        Radius of the stylus, distance of points, and length of a scan [m].
+        Radius of the stylus, distance between points, and length of a scan [m].
     scans
         Number of scans of a cylinder.
 
@@ -112,7 +112,7 @@ class StudySurface:
     Parameters
     ----------
     name
-        The paper's name.
+        Name of the surface in the paper.
     spectrum
         Stand-in for the measured power spectrum.
     rms_roughness, rms_slope
@@ -144,7 +144,7 @@ system = ReferenceSystem()
 profilometer = Profilometer()
 contact = LineContact(system.radius, system.length, system.youngs_modulus, system.poisson_ratio)
 
-# Numbers as printed in the paper.
+# Table of the numbers as printed in the paper.
 published: tuple[Published, ...] = read_published(Path(__file__).with_name("xu2026_published.csv"))
 
 # 1, 2.15 and 4.64 in each decade: equal steps on a logarithmic scale.
@@ -187,8 +187,8 @@ _SURFACES = (
         area_ratio=0.0428,
         area_ratio_glycerol=0.052,
         area_ratio_dry=0.0528,
-        # the last is printed as 0.98, but the figure's own name and the ratio of 1.75 to 1.95
-        # to Sb-S in the text require 0.94; kept as printed
+        # the last stress is kept as printed, 0.98 MPa, although the figure's name and the ratio of
+        # 1.75 to 1.95 to Sb-S in the text require 0.94 MPa
         shear_stress=_pairs(1.08e6, 1.08e6, 1.00e6, 0.98e6),
     ),
 )
@@ -216,7 +216,7 @@ def surface(name: str) -> StudySurface:
 
 
 def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
-    """Return the power spectrum that replaces a surface's measured one, from q0 to q1.
+    """Return the stand-in for the measured power spectrum of a surface, from q0 to q1.
 
     Parameters
     ----------
@@ -228,8 +228,8 @@ def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``psd_2d`` [m4] over ``wavenumber`` [1/m], in the convention of `SelfAffine`; of several
-        over (surface, wavenumber), with the roll-off of each on a node.
+        ``psd_2d`` [m4] over ``wavenumber`` [1/m], in the convention of `SelfAffine`; for several
+        surfaces over (surface, wavenumber), with a node at the roll-off of each.
 
     Examples
     --------
