@@ -1,4 +1,4 @@
-"""Search for files by names with wildcards."""
+"""Search for files whose names match a pattern with wildcards."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def matching(pattern: str | Path) -> list[Path]:
         If there is no match.
     """
     path = Path(pattern)
-    folder = next(parent for parent in path.parents if parent.is_dir())  # its name may have "*"
+    folder = next(parent for parent in path.parents if parent.is_dir())  # even "a*b"
     names = folder.glob(str(path.relative_to(folder)))
     files = sorted(name for name in names if not name.name.startswith("."))
     if not files:
@@ -38,7 +38,7 @@ def matching(pattern: str | Path) -> list[Path]:
 
 
 def why_missing(path: Path) -> str:
-    """Return in words what is missing of a path: the file, its folder, or any match."""
+    """Return in words why a path does not exist: no file, no folder, or no match."""
     if any(sign in str(path.parent) for sign in "*?") and not path.parent.is_dir():
         return "the pattern matches nothing"
     if not path.parent.is_dir():

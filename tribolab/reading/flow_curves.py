@@ -77,7 +77,7 @@ def read_flow_curve(path: str | Path) -> FlowCurve:
 
 
 def _concept(label: str) -> str:
-    """Return the quantity of a flow curve that a column name means; "" if it means neither."""
+    """Return the quantity of a flow curve that a column name means; "" if it means none."""
     whole = normalise_label(label)
     words = [word for word in known_words("run") if word.quantity in _UNITS]
     return next((w.quantity for w in words if whole in (*w.stems, *w.symbols)), "")

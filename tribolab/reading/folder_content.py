@@ -21,7 +21,7 @@ _NO_DATA = (
 
 
 def may_hold_data(path: Path) -> bool:
-    """Whether files with this suffix may contain measurements."""
+    """Whether a file may contain measurements, by its suffix."""
     return path.suffix.lower() not in _NO_DATA
 
 

@@ -36,7 +36,7 @@ _TURNED = re.compile(
     r"|\b(?:PP|CP|CC)\d{2}\b",
     re.IGNORECASE,
 )
-# ways of loading in a DMA, which may also have plates
+# loading modes of a DMA, which may also have plates
 _PRESSED = re.compile(r"compress|tension|tensile|cantilever|bend|druck|zug", re.IGNORECASE)
 NO_UNIT = ("", "-", "1", "[]", "[-]", "[1]")
 Row = list[str]
@@ -268,7 +268,7 @@ def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
 
 
 def _with_names(lines: list[str], suffix: str) -> list[str]:
-    """For two formats without a row of column names, insert the names above the numbers.
+    """Return the lines; for two formats without a row of column names, with names inserted.
 
     TA Universal Analysis (Q800) lists them as "Sig1<tab>Time (min)" above "StartOfData"; RepTate's
     .tts and .osc files contain omega [rad/s], G' and G'' [Pa], according to its manual.
@@ -292,7 +292,7 @@ _OMEGA_MODULI = ("omega [rad/s]", "G' [Pa]", "G'' [Pa]")
 
 
 def _apart(row: Row) -> Row:
-    """Split a row of numbers at blanks: RepTate has tabs only between names."""
+    """Return a row, split at blanks if only numbers: RepTate writes blanks between numbers."""
     cells = row[0].split() if len(row) == 1 else row
     return cells if all(map(_NUMBER.fullmatch, cells)) else row
 

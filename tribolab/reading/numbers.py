@@ -20,7 +20,7 @@ _PER = re.compile(rf"\s?{_A_PER}\s?")
 
 
 class Number(NamedTuple):
-    """Number in a text: its digits, the possible unit after them, and start and end of both."""
+    """Number in a text: digits, the word after them (perhaps a unit), start and end index."""
 
     text: str
     unit: str
@@ -81,7 +81,7 @@ def escaped(text: str) -> str:
 
 
 def number_pattern(before: str) -> str:
-    """Return a pattern for the number after the text `before`, whose own numbers may vary.
+    """Return a pattern for the number after the text `before`; numbers in that text may differ.
 
     >>> re.search(number_pattern("# cell 2: "), "# cell 3: 4.5 N")[1]
     '4.5'

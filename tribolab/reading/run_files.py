@@ -1,4 +1,4 @@
-"""Read raw files: one run, or all runs that a pattern names."""
+"""Reading of one run, or of all runs in a folder or pattern."""
 
 from __future__ import annotations
 

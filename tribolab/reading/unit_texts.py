@@ -67,7 +67,7 @@ def measures_something(text: str) -> bool:
     return not letter and any(converts(text, dimension) for dimension in _FURTHER)
 
 
-# counted things, a length used only by printers, and a word that pint reads as milliarcseconds
+# not units here: counted things, and "mass", which pint reads as milliarcseconds
 _COUNTED = frozenset({"point", "points", "pixel", "pixels", "dot", "dots", "line", "lines", "mass"})
 
 

@@ -101,7 +101,7 @@ def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run
         return read(instrument, False)
     except UnknownFileError as error:
         if Path(error.where) != paths[0]:
-            raise  # the first file is of a known instrument
+            raise  # the unknown file is not the first one
         dialect = _drafted(paths[0], error)
     except LacksError as error:
         other = None if instrument is not None or len(paths) > 1 else _complete_dialect(paths[0])
@@ -118,7 +118,7 @@ def is_run_file(path: Path, *, by_name: bool = True) -> bool:
     draft = draft_of(path)
     if draft is None:
         return _has_signals(path)
-    in_columns = draft.layout is not None and draft.layout.held is not None  # these have names
+    in_columns = draft.layout is not None and draft.layout.held is not None  # with names
     return draft.kind == "run" and (draft.named or not by_name or in_columns)
 
 

@@ -21,7 +21,7 @@ from tribolab.reading.raw.missing_marks import beyond_range, measurable, take_ma
 from tribolab.reading.text.first_bytes import File, fits_format, peek
 
 _T = TypeVar("_T")
-_UNCLEAR = 0.5  # ratio of the smaller to the larger extreme above which the sign is unknown
+_UNCLEAR = 0.5  # least |minimum|/maximum (or inverse) of a load whose sign is unclear
 _PLACES = ("x", "y")  # coordinates of a scan, checked by `scan_grid`
 _OF_NAMES = 3  # largest number of lines before the numbers if there is no preamble
 

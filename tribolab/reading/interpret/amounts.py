@@ -1,4 +1,4 @@
-"""Amounts, i.e. numbers with a unit, that a file or its name states, and how to query them."""
+"""Numbers with units that a file or its name states, and queries for them."""
 
 from __future__ import annotations
 
@@ -51,25 +51,25 @@ class Amount(NamedTuple):
 
     @property
     def number(self) -> float:
-        """Number as in the file; NaN if it is invalid."""
+        """The number as written in the file; NaN if it cannot be read."""
         match = re.search(self.pattern, self.text)
         return decimal(match[1]) if match else float("nan")
 
     @property
     def value(self) -> float:
-        """Number times its scale, in its unit; NaN if it is invalid."""
+        """The number times `scale`, in `unit`; NaN if it cannot be read."""
         return self.scale * self.number
 
     def means(self, *concepts: str) -> bool:
-        """Whether its name in the file means any of the given concepts of settings.toml."""
+        """Whether the amount's name in the file means any of the given concepts."""
         return any(key_pattern(concept).search(self.key) for concept in concepts)
 
     def is_in(self, si_unit: str) -> bool:
-        """Whether its unit converts to the given SI unit; weights convert to newtons."""
+        """Whether the amount can be converted to the given SI unit; weights convert to newtons."""
         return converts(self._unit(si_unit), si_unit)
 
     def si(self, si_unit: str) -> float:
-        """Return its value in the given SI unit; NaN if the dimension differs."""
+        """Return the amount in the given SI unit; NaN if its dimension differs."""
         if not self.is_in(si_unit):
             return float("nan")
         return self.scale * self.number * conversion(self._unit(si_unit), si_unit)[0]

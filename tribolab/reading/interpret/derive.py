@@ -141,7 +141,7 @@ def missing_members(
 
 
 def rules_for(goal: str, facts: Collection[str]) -> Iterator[tuple[Rule, tuple[str, ...]]]:
-    """Yield each rule that gives a quantity, with its inputs; a rate follows from its integral."""
+    """Yield each rule that gives a quantity, with its inputs; a speed follows from the position."""
     for rule in rules():
         if rule.use == "proof" or (rule.condition and rule.condition not in facts):
             continue

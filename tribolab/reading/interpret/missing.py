@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 from tribolab.reading.interpret.derive import Given, Known, missing_members
 
 Goal = Literal["friction", "load", "speed"]
-_GOALS: dict[Goal, tuple[str, ...]] = {  # any is enough; only the first may be derived
+_GOALS: dict[Goal, tuple[str, ...]] = {  # alternatives; only the first may be derived
     "friction": ("friction_force", "friction_coefficient", "shear_stress"),
     "load": ("normal_force", "normal_stress", "friction_coefficient"),
     "speed": ("sliding_velocity", "position", "set_speed"),

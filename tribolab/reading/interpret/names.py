@@ -34,7 +34,7 @@ _INSTEAD = {"position": "height_displacement"}
 _ANGLES = ("deg", "rad", "°")
 _MAX_NAME = 1000  # characters of a name, as searches take quadratic time
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
-# units that mean another unit for some quantities, by SI unit: g is gf for a force
+# by SI unit of the quantity, units to be read as another unit: g of a force is gf
 _MEANT = {"N": WEIGHTS}
 _OF_HEIGHTS = {"m": {"A": "angstrom"}}
 _NO_TORQUE = ("N", "1", "Pa")

@@ -128,7 +128,7 @@ def _fit(
 
 
 def _expected(rule: Rule, units: tuple[str, ...]) -> float:
-    """Return the ratio of left to right side of a rule that its numbers have in given units."""
+    """Return the ratio of a rule's left to right side, if all numbers are in the given units."""
     factor, powers = rule.powers()
     scales = [to_si(n, u) for n, u in zip(rule.members, units, strict=True)]
     right = (s ** powers.get(n, 1) for n, s in zip(rule.members[1:], scales[1:], strict=True))
@@ -147,7 +147,7 @@ def _units(
     candidates: Sequence[Candidate],
     numbers: np.ndarray,
 ) -> Iterator[list[str]]:
-    """Yield, for each quantity in a rule, the units that make its column plausible in size."""
+    """Yield, for each quantity in a rule, the units in which its column has a plausible size."""
     for name, place in zip(rule.members, places, strict=True):
         own = candidates[place].unit
         options = units_written()[name] if own is None else _read_as(name, own)

@@ -24,7 +24,7 @@ class Rule(NamedTuple):
     formula: str
     rate: bool = False
     use: Literal["both", "proof", "derivation"] = "both"
-    condition: str = ""  # fact about the rig
+    condition: str = ""  # required fact about the rig
     asks: tuple[str, ...] = ()
     doubt: str = ""
     speed: str = ""

@@ -38,7 +38,7 @@ from tribolab.units.spellings import WEIGHTS, unit_in_words
 _MAX_ENTRY = 1000  # characters of a line that are parsed, as searches take quadratic time
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"; of testXpert
 # "Test speed";"mm/min";"100"
-_ENTRY, _IN_CELLS = (  # the latter: "Dead weight,500,g"
+_ENTRY, _IN_CELLS = (  # `_IN_CELLS` is for commas: "Dead weight,500,g"
     re.compile(
         rf"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)"
         rf"(?:\"?\s*[:：=]?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}})"

@@ -179,7 +179,7 @@ def plain_words(name: str) -> frozenset[str]:
 
 @functools.cache
 def alternatives(name: str) -> str:
-    """Return a regular expression for any word of an entry of sentences.toml, for raw text.
+    """Return a regular expression that finds any word of an entry of sentences.toml in raw text.
 
     A word that ends in ``~`` may have up to nine more letters.
     """

@@ -12,7 +12,7 @@ import regex
 from tribolab.core.errors import ReadError, shown
 
 MAX_PATTERN = 1000  # characters of a pattern
-_SECONDS = 2.0  # time limit per _AMOUNT of text, and for any shorter text
+_SECONDS = 2.0  # time limit per _AMOUNT of text
 _AMOUNT = 1 << 22  # characters or bytes
 
 
@@ -78,7 +78,7 @@ class Guarded(Generic[AnyStr]):
         return match
 
     def fullmatch(self, text: AnyStr) -> bool:
-        """Whether it matches the whole text; errors as in `search`."""
+        """Whether the expression matches the whole text; errors as in `search`."""
         try:
             return self._compiled.fullmatch(text, timeout=_limit(len(text))) is not None
         except TimeoutError as error:
@@ -113,7 +113,7 @@ class Guarded(Generic[AnyStr]):
 
 @functools.lru_cache(maxsize=256)
 def guarded(pattern: str) -> Guarded[str]:
-    """Return a pattern for text, compiled at its first use only."""
+    """Return a regular expression with a time limit; it is compiled only once."""
     return Guarded(pattern)
 
 

@@ -36,7 +36,7 @@ def refuse_endless(path: Path, head: bytes, size: int) -> None:
     ends = ends if ends.size else np.flatnonzero(letters == ord("\r"))
     longest = int(np.diff(ends, prepend=0, append=letters.size).max())
     wide = np.array([], int)
-    if longest > 2 * limits.COLUMNS_OF_TEXT.value:  # a cell takes two bytes
+    if longest > 2 * limits.COLUMNS_OF_TEXT.value:  # a cell has at least two bytes
         between = _BETWEEN[letters]
         before = np.concatenate(([True], between[:-1]))
         starts = np.flatnonzero(before & ~between)  # of cells

@@ -112,7 +112,7 @@ def _seen(path: Path, binary: bool, _: Identity | None) -> File:
             check_self_contained(path)
         except (RefusedError, MissingLibraryError):
             raise
-        except ReadError:  # damaged: its reader reports more
+        except ReadError:  # the file is damaged; its reader reports details
             pass
     return found
 
@@ -226,7 +226,7 @@ def _has_tables(path: Path, size: int, changed: int) -> bool:
 _MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)
 
 
-# roughness parameter, its value (asterisks: not computed) and its unit
+# name, value (asterisks if not computed) and unit of a roughness parameter
 _NAMED = re.compile(
     r"^\s*(?P<name>[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|\u0394q|Sm|z1max|max|3z|k|pk|vk)\d?|(?:\u03bb|[Ll])[cs]"
     r"|[Cc]ut-? ?off)\s*[:=;,\t ]\s*(?P<value>[-+]?\d+(?:[.,]\d+)?|\*[.,*]*\*)"

@@ -104,7 +104,7 @@ _ROWS = 4000  # most lines inspected
 _NUMBER = re.compile(r"\s*[+-]?\d[\d.,]*\s*")
 _APART = "\t;"  # delimiters that are no thousands separators
 _BLANK = r"[^\S\t\n]"  # a blank in a cell, no tab: a search scans a row of empty cells only once
-# patterns of numbers with both marks, and of integers with separators only
+# patterns of numbers with thousands separator and decimal mark, and of integers with separators
 _BOTH = re.compile(rf"\d[{''.join(_MARKS)}]\d{{3}}[.,]\d")
 _WHOLE = re.compile(
     rf"(?m)(?:^|[\t;])(?:{_BLANK}|[+-])*[1-9]\d{{0,2}}(?:[.,]\d{{3}})+{_BLANK}*(?:$|[\t;])"

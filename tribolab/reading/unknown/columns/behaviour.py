@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 _ROWS = 20_000  # rows that are inspected
 _MIN_CORRELATION = 0.9999  # correlation of one signal in two units
-_COMPARED = 1000  # columns that are compared, as each is compared with each
+_COMPARED = 1000  # columns of which all pairs are compared
 _MIN_FACTORS, _MIN_STRAIGHT = 5, 0.98  # rows; correlation of the logarithm with the row number
-_EVERY = 20  # only each 20th sample of a smooth signal is needed for its path length
+_EVERY = 20  # every 20th sample gives nearly the same path length of a smooth signal
 _SMOOTH = 1.12  # largest ratio of the path lengths from all and from each 20th sample
 _MAX_SCAN = 200.0  # mm, longest traverse of a profilometer
 _HIGHEST = 5.0  # mm, largest range of a stylus gauge

@@ -136,7 +136,7 @@ def take_dates(columns: list[DraftColumn], layout: Layout, cells: Cells) -> list
     dates = [] if timed or not any(text) else list(_dates(columns, layout, cells))
     if not dates:
         return columns
-    # a column of dates without time of day is constant
+    # prefer a column that changes: dates without time of day do not
     column, moments, form, other = next((one for one in dates if np.ptp(one[1]) > 0), dates[0])
     numbers[:, column.place - 1] = moments
     dated = column._replace(

@@ -67,7 +67,7 @@ class _Assignment(NamedTuple):
         return self.by_place.get(place, ())
 
     def option(self, place: int, name: str) -> Match:
-        """Return the match of a column's name with a quantity; certain if other evidence is."""
+        """Return how well a column's name suits a quantity; evidence may make it certain."""
         said = [option for option in self.facts.options[place] if option.quantity == name]
         option = said[0] if said else Match(name, UNSURE, None)
         if any(one.sure and one.quantity == name for one in self.about(place)):
@@ -77,7 +77,7 @@ class _Assignment(NamedTuple):
         return option
 
     def other_force_is_taken(self, place: int, name: str) -> bool:
-        """Whether a column that may be either force is clear, as another is the other force."""
+        """Whether a column must be one of both forces, because another column is the other one."""
         other = BOTH_FORCES[name == BOTH_FORCES[0]]
         if not self.facts.is_either_force(place) or other not in self.names:
             return False

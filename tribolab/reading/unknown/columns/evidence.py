@@ -246,7 +246,7 @@ def typical_size(facts: Facts, place: int) -> float:
 
 
 def is_contested(facts: Facts, place: int, best: int, name: str) -> bool:
-    """Whether a column suits a quantity by name as well as the best column, but differs from it."""
+    """Whether two columns are equally well named for a quantity, but contain different values."""
     if name not in _DECIDING or role_of(facts.bare[best][0]) == "measured":
         return False
     if role_of(facts.bare[place][0]) or not facts.is_named(place, name):

@@ -22,7 +22,7 @@ _MIN_ROWS_FOR_ROTATION = 20
 _EXPLAINED_BY_ROTATION = 0.98  # share of a displacement's variance
 _SMALLEST_TURN = 2 * math.pi * 0.5e-3  # m slid per turn on the smallest track (physics.toml)
 _MOVING = 0.2  # of the highest speed; below it, the friction may be reversing
-_MIN_TURNS = 2  # reversals; a single one might be chance
+_MIN_TURNS = 2  # fewest reversals, as a single one might be chance
 _AGREES = 0.9  # mean product of the signs: 95 % of the rows agree
 
 
@@ -47,7 +47,7 @@ def direction_evidence(facts: Facts) -> Iterator[Evidence]:
 
 
 def distance_evidence(facts: Facts) -> Iterator[Evidence]:
-    """Rule out a length that only grows if another position reverses: it is the distance slid."""
+    """Rule out a length as the position if it only grows while another position reverses."""
     steps = {
         place: np.diff(facts.numbers[np.isfinite(facts.numbers[:, place]), place])
         for place in facts.places("position")

@@ -88,10 +88,7 @@ def _explanation(name: str, lines: Sequence[str]) -> str:
 
 
 def stated_load_evidence(layout: Layout) -> Rule:
-    """Return the rule that the cell measures the normal force if it reads the stated load.
-
-    Otherwise the cell measures the friction force.
-    """
+    """Return the rule that a force is the load if it reads the stated load, else friction."""
 
     def rule(facts: Facts) -> Iterator[Evidence]:
         cells = _undecided_cells(facts) if facts.kind == "run" else []
@@ -122,7 +119,7 @@ def stated_load_evidence(layout: Layout) -> Rule:
         doubt = f"it is the friction force: {why}"
         if presses:
             why = doubt = f"it is the normal force: it reads what '{load.text}' says"
-        # on a lever arm, a cell reads another force than the friction
+        # on a lever arm, the reading is not the friction force
         only = _is_called_force(facts, place) and find_arm(stated) is None
         sure = not presses and (sled or only)
         yield Evidence(

@@ -15,9 +15,9 @@ from tribolab.reading.unknown.model import DraftColumn, Kind, other_units, time_
 from tribolab.units.quantities import quantity
 
 Bare = tuple[str, str | None, bool]  # name, unit, whether the dialect must state the unit
-FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # for a coefficient
+FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # give µ
 IN_SECONDS = "time is in s"  # guess for a clock without a unit
-_NOISE = 0.1  # of the highest load; an unloaded sensor may show as much
+_NOISE = 0.1  # noise of an unloaded sensor as a share of the highest load, at most
 _BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # usually a unit
 _FACTOR = re.compile(
     r"[x×*·]?\s?\b10\s?\^\s?-?\d+|[x×*·]\s?1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
@@ -95,7 +95,7 @@ def _doubts_of_name(
         doubts.append(f"the name means {quantity(option.quantity).long_name}")
     if several and not aside:
         doubts.append(f"of several columns for {option.quantity} it is the one meant")
-    # a load in grams is a dead weight, without doubt
+    # a load in grams is certainly a dead weight
     weight = option.quantity == "normal_force" and key_pattern("load").search(normalise_label(name))
     if option.unit and not weight and kind != "scan":
         doubts.append(f"'{shown(unit)}' means {option.unit}")

@@ -21,7 +21,7 @@ from tribolab.units.quantities import unit_conversion
 
 _MEASURED = ("friction_reading", "arm_force", "friction_force_signal")
 _PRESSED = 0.5  # of the largest load; below it, the contact is open
-_HELD = 1.1  # largest ratio of a controlled load to its set-point, and of set-point to load
+_HELD = 1.1  # largest ratio of a controlled load to its set-point, or the inverse
 
 
 def what_follows(layout: Layout, understood: Understood) -> Follows:
@@ -45,7 +45,7 @@ class _CacheKey(NamedTuple):
         return isinstance(other, _CacheKey) and all(map(operator.is_, self, other))
 
 
-@functools.lru_cache(maxsize=2)  # questions, remarks and the dialect all need it
+@functools.lru_cache(maxsize=2)  # the result is needed for questions, remarks and the dialect
 def _derived(found: _CacheKey) -> Follows:
     layout, understood = found
     known = find_known(layout, understood)

@@ -201,7 +201,7 @@ def _add_surfaces(known: _Facts, pair: Pair) -> None:
     if not radii:
         _add_track(known)
         return
-    if len({value.number * value.scale for value in values}) < 2:  # else ambiguous
+    if len({value.number * value.scale for value in values}) < 2:  # one radius
         known.add("track_radius", radii[0].symbol, radii[0].source)
 
 

@@ -65,7 +65,7 @@ def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Unc
     torque = unscaled_torque_of(columns)
     torque = None if held & SAYS_FRICTION or torque_of(columns) is not None else torque
     if torque is not None or (torque_of(columns) is None and not at_arm and unknown_of(columns)):
-        names.add("friction_force")  # the user is asked for its calibration, or for its column
+        names.add("friction_force")  # the user is asked for the calibration or the column
     facts = set(follows.facts)
     if any(value.name == CRANK for value in follows.values):
         facts.add("crank")

@@ -68,7 +68,7 @@ class Follows(NamedTuple):
             values = [
                 v._replace(guess=_WIDE_RING) if v.name == "outer_radius" else v for v in values
             ]
-        columns = [  # the zero of a column that gives the friction is the zero of the friction
+        columns = [  # the zero of such a column is the zero of the friction derived from it
             (name, leaf.source, leaf.quantity in _BEFORE_FRICTION)
             for leaf in leaves
             if isinstance(leaf.source, DraftColumn)

@@ -115,7 +115,7 @@ def column_in_volts(columns: Sequence[DraftColumn], force: str) -> DraftColumn |
 def take_stated_missing(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> list[str]:
-    """Replace heights equal to a stated no-data value by NaN; return such cells as text."""
+    """Replace heights equal to a stated no-data value by NaN; return the texts of these cells."""
     stated = [
         (v.text, v.number) for v in numeric_settings(layout, bare=True) if v.number == v.number
     ]

@@ -31,7 +31,7 @@ _NUMBERED = (re.compile("1$"), re.compile("2$"))
 
 
 class Pair(NamedTuple):
-    """Speed columns of two surfaces (linear, or rotation if `turns`), and their name patterns."""
+    """Speed columns of two surfaces (rotation speeds if `turns`), and patterns of their names."""
 
     columns: tuple[DraftColumn, DraftColumn]
     turns: bool

@@ -44,7 +44,7 @@ def unapplied_factors(layout: Layout) -> list[str]:
     """
     lines = layout.sentences()
     if any(key_pattern("per_contact").search(label_of(line)) for line in lines):
-        lines = [line for line in lines if not contacts_in(line)]  # `find_load` multiplies
+        lines = [line for line in lines if not contacts_in(line)]  # see `find_load`
     return [sentence for line in lines if (sentence := _unapplied(line))]
 
 
@@ -103,7 +103,7 @@ def _unapplied(line: str) -> str:
         key = line[: ratio.start()]
         named = mentions("factor", key) or mentions("transmission", key)
         if named and any(key_pattern("load").search(s.key) for s in phrases(line[ratio.end() :])):
-            return ""  # the load that the lever gives is stated as well
+            return ""  # the line also states the resulting load
         if named and decimal(ratio[1]) != decimal(ratio[2]):
             return as_they_stand
     if mentions("lever", line) and any(not number.unit and number.value != 1 for number in numbers):

@@ -37,7 +37,7 @@ _EVERY = re.compile(  # "every 10th sample"
     re.IGNORECASE,
 )
 _PER_SAMPLE = re.compile(rf"(?P<time>[mµun]?s|sec|min)\s*{_PER}\s*{_SAMPLE}\.?")
-_RATE_UNITS = {"": "Hz", "k": "kHz", "m": "MHz"}  # m is mega: nobody samples at mHz
+_RATE_UNITS = {"": "Hz", "k": "kHz", "m": "MHz"}  # "m" means mega, as no instrument samples at mHz
 
 
 class Sampling(NamedTuple):
@@ -98,7 +98,7 @@ def sample_rate_unit(text: str) -> str:
     >>> sample_rate_unit("samples/min"), sample_rate_unit("mm/s")
     ('1/min', '')
     """
-    # without accents and capitals, but with its signs
+    # in lower case without accents, but with signs such as "/"
     per = _PER_TIME.fullmatch("".join(normalise_label(sign) or sign for sign in text.strip()))
     if per is None or (per["many"] and per["minute"]):
         return ""

@@ -155,7 +155,7 @@ def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftCo
             lengths.append(column)
         elif is_stroke_frequency(name, unit) and not column.used:
             frequencies.append(column)
-    # if set and measured frequency are recorded, the measured one
+    # if both set and measured frequency are recorded, use the measured one
     measured = [c for c in frequencies if role_of(c.label) != "set"]
     return lengths, measured if len(frequencies) > 1 else frequencies
 

@@ -19,7 +19,7 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
 _STEP_ZERO = re.compile(rf"{STEP_WORD}\W{{0,3}}0(?!\d)", re.IGNORECASE)
-_ROW = re.compile(r"\s*\"?[01]\"?\s*[,;\t]")  # first step of a test programme
+_ROW = re.compile(r"\s*\"?[01]\"?\s*[,;\t]")  # row of the first step in a test programme
 STILL = "it is still in the signal"
 _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 
@@ -68,7 +68,7 @@ def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> l
     """Return a doubt about the friction zero if the text states a start or strokes without load."""
     held = {c.quantity for c in columns if c.used}
     if "normal_force" in held or "friction_coefficient" in held:
-        return []  # the load shows when the contact is open
+        return []  # the load or the coefficient shows when the contact is open
     said = [line for line in layout.sentences() if _says_unloaded_start(line)]
     return [f"the friction is read as it stands, although '{shown(line, 60)}'" for line in said[:1]]
 

@@ -164,7 +164,7 @@ _LISTED = 4  # other tables that are named in a guess
 
 
 class HeldColumn(NamedTuple):
-    """Column of a file: its name for the reader, its label in its table, its unit and numbers.
+    """Column of a file: name for the reader, label in the table, unit and numbers.
 
     `said` is True if the reader finds the unit in the file; `shown` is a name for interpretation
     if the label has no meaning.
@@ -224,7 +224,7 @@ _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
 
 
 def main_sheet(path: Path) -> Held:
-    """Return the sheet with the most rows of numbers, and the line of their names.
+    """Return the sheet with the most rows of numbers, and the line of its column names.
 
     Raises
     ------

@@ -164,7 +164,7 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
         return False
     if re.match(r"\s*(#|%|//|;|\*|!)", line) and re.search(r"[:=]", line):
         return False  # a comment that is a setting: "# rate: 10 Hz"
-    # "Interval data:" may precede the names of all columns, "Operator:" a name
+    # a cell such as "Operator:" is a setting; "Interval data:" may precede all column names
     first = 1 if len(cells) == width and len(filled) > 3 else 0
     if any(cell.endswith((":", "=")) for cell in filled[first:]) or not re.search(r"\w", line):
         return False

@@ -131,7 +131,8 @@ _SINGLE_BYTES = (
     *("latin-1", "cp1252", "cp1250", "iso8859-2", "cp1254", "cp1251", "koi8-r", "cp1253"),
     *("cp437", "cp852", "cp866", "mac-roman"),
 )
-_EASTERN_UNITS = re.compile(rf"(?<!\w)(?:{MICRO[1]}m|\u2103)(?!\w)")  # where no word is known
+# units that show the encoding if no word is known
+_EASTERN_UNITS = re.compile(rf"(?<!\w)(?:{MICRO[1]}m|\u2103)(?!\w)")
 
 
 @functools.cache
@@ -186,7 +187,7 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
     filled = [line for line in lines if line.strip()]
     voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
     best, highest = None, 0
-    alone = False  # one delimiter that no line contains is tried, as all give the same
+    alone = False  # whether a delimiter that no line contains was tried: all give the same
     for delimiter in DELIMITERS:
         if delimiter != "whitespace" and not any(delimiter in line for line in voters):
             if alone:
@@ -201,7 +202,7 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
                 width, merit = grammar.merit(line)
                 votes[width] += merit
             top = max(votes.values(), default=0)
-            # tabs come first in DELIMITERS; blanks include tabs and split a few more lines
+            # blanks must be clearly better, because they split lines at tabs, too
             if top > (_BLANKS if delimiter == "whitespace" else 1.0) * highest:
                 best, highest = grammar, top
     return Grammar("\t", ",") if best and _one_column(best, voters) else best

@@ -136,7 +136,7 @@ class Layout(NamedTuple):
 
     @property
     def units_line(self) -> int:
-        """How many lines the units are below the names, without blank lines; 0 without units."""
+        """Number of lines from the names to the units, without blank lines; 0 without units."""
         heading = self.heading
         if heading is None or heading.units is None:
             return 0
@@ -162,7 +162,7 @@ class Layout(NamedTuple):
             return lines
         left = list(enumerate(block.heading.cells))
         places = []
-        for name in self.heading.cells:  # equal names keep their order
+        for name in self.heading.cells:  # columns with equal names keep their order
             place = next(place for place, cell in left if cell == name)
             left.remove((place, name))
             places.append(place)

@@ -116,7 +116,7 @@ _MOTION = {"position", "rotation_speed", "set_speed", "rolling_speed", "slide_ro
 
 
 def leave_out_doubtful(draft: AnyDraft) -> tuple[AnyDraft, tuple[str, ...]]:
-    """Return the draft of a run without doubtful columns that no result needs, and a list of these.
+    """Return a run's draft without doubtful columns that no result needs, and the removed columns.
 
     A doubtful column is not needed if another column gives the same result with certainty. Time is
     always needed.
@@ -230,5 +230,5 @@ def _measured(unit: str, names: Sequence[str]) -> str | None:
 def _ratio(read_unit: str | None, per: str) -> float:
     """Return the factor from the column's unit to the unit `per`, e.g. mV to V; 1 for counts."""
     if not read_unit or not converts(read_unit, per):
-        return 1.0  # counts, digits, divisions
+        return 1.0  # the column is in counts or divisions
     return conversion(read_unit, per)[0]

@@ -1,4 +1,4 @@
-"""Dialect that reads a file according to its interpretation."""
+"""Construction of the dialect that reads a file, from the interpretation of the file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _MAX_SETTINGS = 12  # values of a long preamble that are proposed
 
 
 class Described(NamedTuple):
-    """Interpretation of a file in the terms of a dialect.
+    """Parts of a dialect for a file: layout, columns, derived quantities and single values.
 
     `stated` are the single values in the file that the dialect uses, `proposed` the other ones.
     """
@@ -69,7 +69,7 @@ class Described(NamedTuple):
 
 
 def describe(layout: Layout, understood: Understood) -> Described:
-    """Return the interpretation of a file in the terms of a dialect."""
+    """Return the parts of a dialect for a file with a given layout and interpretation."""
     follows = what_follows(layout, understood)
     proposed, stated = _values(layout, understood, follows)
     if layout.delimiter == "whitespace":
@@ -271,7 +271,7 @@ def _values(
 
 
 def any_blanks(pattern: str) -> str:
-    r"""Return a pattern in which each run of blanks and tabs matches any other such run.
+    r"""Return a pattern in which blanks and tabs match any number of blanks and tabs.
 
     In a table whose cells are separated by blanks, the reader sees one tab for each run of blanks.
 

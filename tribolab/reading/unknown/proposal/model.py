@@ -102,7 +102,7 @@ class Drafted:
             return True
         if self.layout is None or self.understood is None or self.kind != "run":
             return False
-        # columns in formulas, as volts with a stated gain
+        # formulas may use named columns, such as volts with a stated gain
         return any(c.label for _, c in what_follows(self.layout, self.understood).symbols)
 
     @property
