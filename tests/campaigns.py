@@ -5,7 +5,7 @@ import re
 import shutil
 from pathlib import Path
 
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.campaign.surfaces.stage import Surfaces, SurfaceTask, process_surface
 from tribolab.rig import simulate_campaign
 

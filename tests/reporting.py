@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.campaign.settings.config import Campaign
-from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import write_data
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
 from tribolab.friction.oscillation.slip_segments import stick_slip

@@ -17,7 +17,7 @@ from tribolab.app.run import run_campaign
 from tribolab.campaign.models.kept import kept_model
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.cli import app
 from tribolab.core.errors import ConfigError
 from tribolab.records.part_records import ModelRecord, ModelRows

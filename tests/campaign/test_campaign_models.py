@@ -18,7 +18,7 @@ from tribolab.app.truth.friction import TruthComparison
 from tribolab.app.truth.known import DemoComparison
 from tribolab.app.truth.lines import truth_lines
 from tribolab.app.truth.shear_stress import compare_shear_stress
-from tribolab.campaign.models.analysis import model_and_points
+from tribolab.campaign.models.shear_stress import model_and_points
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.core.errors import AnalysisError, ConfigError

@@ -18,7 +18,8 @@ from tribolab import rig
 from tribolab.app.run import run_campaign
 from tribolab.app.truth.surfaces import compare_surfaces
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.campaign.store.catalogue import CATALOGUE, Store
+from tribolab.campaign.store.catalogue import CATALOGUE
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.campaign.surfaces.plan import PlannedMedium, PlannedSurface, plan_surfaces
 from tribolab.campaign.surfaces.stage import Surfaces, SurfaceTask, process_surface
 from tribolab.cli import app

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tribolab.campaign.store import catalogue
-from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue, Store
+from tribolab.campaign.store import new_catalogue
+from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.errors import OutputError
 from tribolab.core.provenance import sha256_of_file
 from tribolab.records.models.mode_record import EvidenceRow, ModeRecord
@@ -214,7 +215,7 @@ def read(monkeypatch):
         names.append(path.name)
         return sha256_of_file(path)
 
-    monkeypatch.setattr("tribolab.campaign.store.catalogue.sha256_of_file", checksum)
+    monkeypatch.setattr("tribolab.campaign.store.new_catalogue.sha256_of_file", checksum)
     return names
 
 
@@ -281,6 +282,6 @@ def test_a_run_of_thousands_of_cycles_is_read_back_and_a_larger_one_is_refused(s
     long = replace(RUN, facts=replace(RUN.facts, segments=rows))  # 20 MB
     store.put("run", "ä", 0, "f", long)
     assert store.get("run", "ä", RunRecord).record == long
-    monkeypatch.setattr(catalogue, "_MAX_RECORD", 1 << 24)
+    monkeypatch.setattr(new_catalogue, "MAX_RECORD", 1 << 24)
     with pytest.raises(OutputError, match="run ä: its record of .* exceeds .* 16 MB"):
         store.put("run", "ä", 0, "f", long)

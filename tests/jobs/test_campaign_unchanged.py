@@ -12,7 +12,7 @@ from campaigns import RUNS, copied, fingerprint
 from tribolab.app.run import run_campaign
 from tribolab.campaign.runs import stage as runs_module
 from tribolab.campaign.settings.load import load_and_plan
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.records.parts import CurveOutcome, RunOutcome
@@ -44,7 +44,7 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
         for name in ("process", "write_report"):
             place = "campaign.pipeline" if name == "process" else "report.results"
             guarded.setattr(f"tribolab.{place}.{name}", refuse)
-        guarded.setattr("tribolab.campaign.store.catalogue.sha256_of_file", refuse)
+        guarded.setattr("tribolab.campaign.store.new_catalogue.sha256_of_file", refuse)
         guarded.setattr("tribolab.reading.netcdf.netcdf.read_netcdf", refuse)
         again = run(campaign)
     assert fingerprint(first.folder) == before and first.folder.stat() == folder

@@ -64,7 +64,7 @@ def test_a_campaign_of_too_much_or_of_control_characters_is_refused(more, words,
 
 
 def test_a_bomb_in_the_catalogue_is_not_known(monkeypatch):
-    monkeypatch.setattr(catalogue, "_MAX_RECORD", 1 << 24)
+    monkeypatch.setattr(catalogue, "MAX_RECORD", 1 << 24)
     packed = zlib.compress(b'"' + bytes(1 << 25) + b'"')
     assert len(catalogue._inflated(packed)) < 1 << 25
     assert list(catalogue._entries([("a", "f", packed)], RunRecord)) == []

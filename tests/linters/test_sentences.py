@@ -75,6 +75,7 @@ def words_of_the_field():
 # Modules whose strings are programs, pages or files, not sentences.
 NO_SENTENCES = {
     "campaign/store/catalogue.py",
+    "campaign/store/new_catalogue.py",
     "reading/unknown/proposal/show.py",
     "figures/axes.py",
     "figures/look/style.py",

@@ -14,7 +14,7 @@ from reporting import made_outcome
 
 import tribolab as tl
 from tribolab.app.run import run_campaign
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.errors import ConfigError
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome

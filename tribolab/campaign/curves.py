@@ -15,8 +15,8 @@ from tribolab.campaign.runs.analysis import AS_FOUND
 from tribolab.campaign.runs.loads import level_mask
 from tribolab.campaign.runs.stage import RunHandle
 from tribolab.campaign.settings.naming.run_names import distinct, safe_name
-from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import digest, write_data
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.attributes import SegmentAttributes
 from tribolab.core.errors import TribolabError
 from tribolab.core.provenance import sha256_of
@@ -269,8 +269,7 @@ def _budget_curve(
     frictions: list[xr.Dataset], speed_tolerance: float
 ) -> tuple[xr.Dataset, Mapping[str, Known]]:
     """Return the curve of the runs with its full uncertainty, and the stated inputs."""
-    # imported late for a quick start
-    from tribolab.metrology.budget import uncertainty_budget
+    from tribolab.metrology.budget import uncertainty_budget  # imported late for a quick start
 
     budget = uncertainty_budget(frictions, speed_tolerance=speed_tolerance)
     return budget.data, budget.known
@@ -278,8 +277,7 @@ def _budget_curve(
 
 def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
     """Return the stated uncertainties of the model inputs; the largest of several runs."""
-    # imported late for a quick start
-    from tribolab.metrology.budget import known_uncertainties
+    from tribolab.metrology.budget import known_uncertainties  # imported late for a quick start
 
     stated = [known_uncertainties(friction) for friction in frictions]
     return {

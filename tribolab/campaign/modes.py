@@ -12,8 +12,8 @@ import numpy as np
 from tribolab.campaign.curves import SLIP
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.settings.contact_pairs import contact_of_label
-from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import optional_data, read_data
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.provenance import sha256_of
 from tribolab.core.wording import explain
 from tribolab.records.models.mode_record import EvidenceRow, ModeRecord, condition

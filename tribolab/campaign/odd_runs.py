@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.campaign.runs.stage import RunHandle
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.wording import percent
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.runs.run_record import CheckRow, RunRecord
@@ -64,8 +64,7 @@ def _condition(store: Store, curve: CurveRecord) -> _Condition | None:
 
 def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
     """Return the result of the check by name of each repeated run."""
-    # imported late for a quick start
-    from tribolab.friction.points.odd_repeats import odd_repeats
+    from tribolab.friction.points.odd_repeats import odd_repeats  # imported late for a quick start
 
     checks: dict[str, CheckRow] = {}
     alone = len(conditions) == 1 and len(conditions[0].runs) < 3

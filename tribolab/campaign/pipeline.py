@@ -19,8 +19,8 @@ from tribolab.campaign.runs.stage import RunHandle, Runs
 from tribolab.campaign.runs.zeros import lent_zeros
 from tribolab.campaign.settings.plan import PlannedRun, planned_runs
 from tribolab.campaign.settings.review import lost_decisions
-from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import UNFINISHED
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.campaign.store.outcome import OpenOutcome
 from tribolab.campaign.surfaces.stage import Surfaces
 

@@ -52,7 +52,7 @@ from tribolab.report.page_figures.traction import traction_figures
 from tribolab.report.tables import SEVERITIES
 
 if TYPE_CHECKING:
-    from tribolab.campaign.store.catalogue import Store
+    from tribolab.campaign.store.new_catalogue import Store
     from tribolab.campaign.store.outcome import OpenOutcome, Outcome
     from tribolab.records.parts import RunOutcome
 

@@ -10,7 +10,8 @@ from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.settings.contact_pairs import contact_of_label
 from tribolab.campaign.settings.naming.run_names import safe_name
-from tribolab.campaign.store.catalogue import Store, fingerprint_of
+from tribolab.campaign.store.catalogue import fingerprint_of
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.provenance import sha256_of
 from tribolab.core.wording import explain
 from tribolab.records.models.joint_record import JointRecord
@@ -159,8 +160,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
     @staticmethod
     def work(task: JointTask) -> JointRecord:
         """Fit the curves of one task."""
-        # imported late for a quick start
-        from tribolab.campaign.joint.work import fitted
+        from tribolab.campaign.joint.work import fitted  # imported late for a quick start
 
         return fitted(task)
 

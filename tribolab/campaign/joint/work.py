@@ -182,8 +182,7 @@ def _curve_name(task: JointTask, surface: str, force: float) -> str:
 
 def _priors(task: JointTask) -> JointPriors:
     """Return the default priors; that of the viscosity follows its range, if stated."""
-    # imported late for a quick start
-    from tribolab.fit.joint.priors import JointPriors
+    from tribolab.fit.joint.priors import JointPriors  # imported late for a quick start
 
     if task.viscosity_range is None:
         return JointPriors()
@@ -217,8 +216,7 @@ class _WetCurve(NamedTuple):
 
 def _read_wet_curves(task: JointTask) -> list[_WetCurve]:
     """Read the curves measured in the liquid, and the curves computed for them."""
-    # imported late for a quick start
-    from tribolab.contact.geometry import make_contact
+    from tribolab.contact.geometry import make_contact  # imported late for a quick start
 
     contacts = {surface: make_contact(**known) for surface, known in task.contacts.items()}
     curves = []

@@ -8,7 +8,7 @@ from tribolab.campaign.store.kept import VERDICTS, kept_record
 from tribolab.records.part_records import ModelRecord
 
 if TYPE_CHECKING:
-    from tribolab.campaign.store.catalogue import Store
+    from tribolab.campaign.store.new_catalogue import Store
 
 
 def kept_model(store: Store, record: ModelRecord) -> ModelRecord:

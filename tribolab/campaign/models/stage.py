@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.models.kept import kept_model
 from tribolab.campaign.models.plan import PlannedModel, plan_models
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.store.catalogue import Store, fingerprint_of
+from tribolab.campaign.store.catalogue import fingerprint_of
 from tribolab.campaign.store.data_files import optional_data, write_data
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.errors import OutputError
 from tribolab.core.provenance import made
 from tribolab.core.untyped import Json

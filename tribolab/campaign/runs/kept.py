@@ -20,7 +20,8 @@ from tribolab.records.runs.run_record import DecisionRow, RunRecord
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.settings.measured import RunEntry
-    from tribolab.campaign.store.catalogue import Entry, Store
+    from tribolab.campaign.store.catalogue import Entry
+    from tribolab.campaign.store.new_catalogue import Store
 
 _REJECTED = "rejected"  # quality of a run, by a person
 _LATER = "what was decided since reaches no segment of it, only the run as a whole"

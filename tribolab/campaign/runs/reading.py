@@ -94,8 +94,7 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
     xarray.Dataset or None
         The same signals as from the raw files (time).
     """
-    # imported late for a quick start
-    from tribolab.reading.netcdf.netcdf import read_netcdf
+    from tribolab.reading.netcdf.netcdf import read_netcdf  # imported late for a quick start
 
     try:
         marked = read_netcdf(earlier.file, "run")

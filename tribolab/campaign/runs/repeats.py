@@ -12,7 +12,7 @@ from tribolab.records.runs.run_record import RunRecord
 
 if TYPE_CHECKING:
     from tribolab.campaign.runs.stage import RunHandle
-    from tribolab.campaign.store.catalogue import Store
+    from tribolab.campaign.store.new_catalogue import Store
     from tribolab.records.parts import RunOutcome
 
 _Own = tuple[str, float]  # name of a run, and a load measured in it [N]

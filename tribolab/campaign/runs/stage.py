@@ -18,8 +18,9 @@ from tribolab.campaign.runs.reading import Earlier, mark_of
 from tribolab.campaign.runs.sources import source_of, sources_of_run
 from tribolab.campaign.runs.zeros import zero_of
 from tribolab.campaign.settings.plan import PlannedRun
-from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
+from tribolab.campaign.store.catalogue import Entry, fingerprint_of
 from tribolab.campaign.store.data_files import write_data
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.errors import AnalysisError, OutputError, message_for
 from tribolab.core.provenance import made
 from tribolab.core.untyped import Json
@@ -276,8 +277,7 @@ def _is_ramp(facts: RunFacts, segments: int) -> bool:
 
 def _add_dead_weight_gain(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> RunFacts:
     """Add the gain from a dead weight that is placed or removed in the record."""
-    # imported late for a quick start
-    from tribolab.metrology.dead_weight import dead_weight_gain
+    from tribolab.metrology.dead_weight import dead_weight_gain  # imported late for a quick start
 
     if run.dead_weight is None:
         return facts

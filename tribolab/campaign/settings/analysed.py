@@ -96,8 +96,7 @@ class Qc(Table):
         """Return limits and names to skip, as far as they are of checks on runs."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
-        # late: starting stays quick
-        from tribolab.qc.run.checks import RUN_CHECKS
+        from tribolab.qc.run.checks import RUN_CHECKS  # imported late for a quick start
 
         return self._of(RUN_CHECKS)
 
@@ -105,8 +104,7 @@ class Qc(Table):
         """Return limits and names to skip, as far as they are of checks on scans."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
-        # late: starting stays quick
-        from tribolab.qc.scan.checks import SCAN_CHECKS
+        from tribolab.qc.scan.checks import SCAN_CHECKS  # imported late for a quick start
 
         return self._of(SCAN_CHECKS)
 
@@ -120,7 +118,7 @@ class Qc(Table):
     def _names_are_known(self) -> Self:
         if self._by_default:
             return self
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.qc.register import resolve_limits
         from tribolab.qc.run.checks import RUN_CHECKS
         from tribolab.qc.scan.checks import SCAN_CHECKS

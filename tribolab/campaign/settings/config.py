@@ -89,8 +89,7 @@ class Campaign(Table):
         options = self.qc.run_options()
         contact = self.contact.by_name[entry.contact or ""].whole()
         if contact is not None and entry.normal_force is not None:
-            # late: starting stays quick
-            from tribolab.contact.hertz import hertz_half_width
+            from tribolab.contact.hertz import hertz_half_width  # imported late for a quick start
 
             load = contact.load(entry.normal_force)
             options["contact_width"] = 2 * float(hertz_half_width(load, contact))
@@ -142,8 +141,7 @@ class Campaign(Table):
 
     def tempered(self, medium: str) -> bool:
         """Whether it is known how the viscosity of a medium changes with temperature."""
-        # late: starting stays quick
-        from tribolab.lubrication.viscosity import knows_liquid
+        from tribolab.lubrication.viscosity import knows_liquid  # imported late for a quick start
 
         table = self.medium.get(medium)
         if table is None:
@@ -164,8 +162,7 @@ class Campaign(Table):
         table = self.medium.get(medium)
         if table is None or table.flow_curve is None:
             return None
-        # late: starting stays quick
-        from tribolab.reading.flow_curves import read_flow_curve
+        from tribolab.reading.flow_curves import read_flow_curve  # imported late for a quick start
 
         return read_flow_curve(self.raw / table.flow_curve)
 

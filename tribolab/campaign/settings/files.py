@@ -173,7 +173,7 @@ def _is_folder(path: Path) -> bool:
 
 def sha256_of_dialect(instrument: str) -> str:
     """Return the checksum of what describes an instrument."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.dialect.find import known_dialects
     from tribolab.reading.raw.readers import is_reader, source_of
 

@@ -69,8 +69,7 @@ class Contact(Table):
 
     def whole(self) -> LineContact | PointContact | None:
         """Return the contact; None as long as something of it is not known."""
-        # late: starting stays quick
-        from tribolab.contact.geometry import make_contact
+        from tribolab.contact.geometry import make_contact  # imported late for a quick start
 
         bodies = self.bodies()
         return None if None in bodies.values() else make_contact(**bodies)

@@ -44,7 +44,7 @@ def contradicting_viscosity(
     name, viscosity, temperature, water_content
         As for `medium_viscosity`.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.lubrication.viscosity import knows_liquid, liquid_viscosity
 
     if viscosity is None or temperature is None or not knows_liquid(name):
@@ -115,7 +115,7 @@ def medium_viscosity(
     >>> round(medium_viscosity(oil, {}, Recorded(303.15, 0.0)).value, 4)
     0.0741
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.lubrication.viscosity import knows_liquid, liquid_viscosity
 
     value, bounds, water = liquid.viscosity, liquid.bounds, liquid.water_content or 0.0

@@ -241,8 +241,7 @@ def planned_runs(campaign: Campaign) -> tuple[PlannedRun, ...]:
 def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list[Path]]:
     if entry.cycles:
         return [files]
-    # late: starting stays quick
-    from tribolab.reading.runs.logs import group_files
+    from tribolab.reading.runs.logs import group_files  # imported late for a quick start
 
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
     return group_files(files, instrument)

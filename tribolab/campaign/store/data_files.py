@@ -60,8 +60,7 @@ def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
     OutputError
         If the disk is full, or the folder is missing.
     """
-    # imported late for a quick start
-    from tribolab.reading.netcdf.netcdf import write_groups
+    from tribolab.reading.netcdf.netcdf import write_groups  # imported late for a quick start
 
     part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
     try:
@@ -93,8 +92,7 @@ def _number_of(
 
 def read_data(path: Path, group: str | None = None) -> xr.Dataset:
     """Open a data file of a campaign, or one group of it."""
-    # imported late for a quick start
-    from tribolab.reading.netcdf.cache import read_kept
+    from tribolab.reading.netcdf.cache import read_kept  # imported late for a quick start
 
     return read_kept(path, group)
 

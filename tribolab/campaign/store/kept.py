@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.attributes import RunAttributes
 from tribolab.core.errors import ReadError
 from tribolab.records.part_records import ModelRecord, SurfaceRecord
@@ -25,8 +25,7 @@ GONE = "it is not there"
 
 def kept_text(path: Path, why: str) -> str:
     """Return the text on why a part is kept, with the date of its data file."""
-    # imported late for a quick start
-    from tribolab.reading.netcdf.netcdf import read_groups
+    from tribolab.reading.netcdf.netcdf import read_groups  # imported late for a quick start
 
     try:
         root = read_groups(path, [None], only={"": ()})[None]

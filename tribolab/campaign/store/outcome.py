@@ -11,7 +11,8 @@ from tribolab.core.wording import many
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
-    from tribolab.campaign.store.catalogue import Catalogue, Store
+    from tribolab.campaign.store.catalogue import Catalogue
+    from tribolab.campaign.store.new_catalogue import Store
     from tribolab.records.parts import (
         CurveOutcome,
         ModelOutcome,

@@ -13,7 +13,7 @@ from tribolab.records.parts import Finding
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
-    from tribolab.campaign.store.catalogue import Store
+    from tribolab.campaign.store.new_catalogue import Store
     from tribolab.campaign.surfaces.plan import PlannedSurface
 
 

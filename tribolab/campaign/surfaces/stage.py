@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.sources import source_of
-from tribolab.campaign.store.catalogue import Store, fingerprint_of
+from tribolab.campaign.store.catalogue import fingerprint_of
 from tribolab.campaign.store.data_files import digest, write_data
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.campaign.surfaces.kept import kept_surface
 from tribolab.campaign.surfaces.plan import PlannedSurface, plan_surfaces
 from tribolab.core.errors import OutputError
@@ -123,8 +124,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         return SurfaceRecord(
             SurfaceOutcome(name=surface.name, files=(), status="skipped", findings=(note,))
         )
-    # imported late for a quick start
-    from tribolab.campaign.surfaces.scans import usable_scans
+    from tribolab.campaign.surfaces.scans import usable_scans  # imported late for a quick start
 
     sources = sources_of_surface(surface)
     checked: CheckedScans | None = None

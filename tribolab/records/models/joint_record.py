@@ -107,8 +107,7 @@ class JointRecord(HasStatus):
 
 def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
     """Return the posterior of each parameter of a fit, one row each."""
-    # imported late for a quick start
-    from tribolab.fit.joint.result import in_words
+    from tribolab.fit.joint.result import in_words  # imported late for a quick start
 
     return tuple(
         JointParameter(

@@ -81,8 +81,7 @@ def model_rows(
     adhesion
         Adhesion of the surface at the loads (medium, load); None if unknown.
     """
-    # imported late for a quick start
-    from tribolab.fit.spectrum_error import shear_stress_shift
+    from tribolab.fit.spectrum_error import shear_stress_shift  # imported late for a quick start
 
     curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
     rows = ModelRows(None, plain_rows(curve), validity=validity_of(groups.values()))

@@ -103,8 +103,7 @@ def roughness_u95(row: Row, name: str) -> float:
     >>> round(roughness_u95({"scans": 3, "Ra_sem_m": 1e-9}, "Ra") * 1e9, 2)
     4.3
     """
-    # imported late for a quick start
-    from scipy import special
+    from scipy import special  # imported late for a quick start
 
     scatter, gaps = (number_of(row, f"{name}_{what}_m") or 0.0 for what in ("sem", "gap_error"))
     scans = number_of(row, "scans") or 1.0

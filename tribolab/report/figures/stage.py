@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.provenance import sha256_of
 from tribolab.core.wording import explain, force_text
 from tribolab.figures.spec import FigureSpec, Series, legend, safe

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.engine.stage import begun
 from tribolab.campaign.recorded import done_and_failed
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.figures.spec import FigureSpec
 from tribolab.records.models.joint_record import JointRecord
 from tribolab.records.models.mode_record import ModeRecord

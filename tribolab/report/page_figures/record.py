@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.new_catalogue import Store
 from tribolab.core.provenance import sha256_of
 from tribolab.core.wording import explain
 from tribolab.records.parts import Notice

@@ -141,8 +141,7 @@ def _label_of(words: Sequence[str]) -> str:
                 return label
         except UnitError:
             continue
-    # late: starting stays quick
-    from tribolab.lubrication.viscosity import knows_liquid
+    from tribolab.lubrication.viscosity import knows_liquid  # imported late for a quick start
 
     liquids = ("oil", "pbs", "saline", "air")
     if all(is_dry(word) or knows_liquid(word) or word.lower() in liquids for word in words):

@@ -160,8 +160,7 @@ def _toml_key(name: str) -> str:
 
 
 def _instrument(campaign: Campaign, name: str) -> str:
-    # late: starting stays quick
-    from tribolab.reading.dialect.find import load_dialect
+    from tribolab.reading.dialect.find import load_dialect  # imported late for a quick start
 
     try:
         load_dialect(instrument_of(campaign, name))
