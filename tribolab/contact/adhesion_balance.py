@@ -40,7 +40,7 @@ March = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 class Balance(NamedTuple):
-    """Solution of Eq. (11) at each wavenumber, for k problems."""
+    """Solution of Eq. (11) at each wavenumber, for k pairs of pressure and work of adhesion."""
 
     area: np.ndarray  # P(q) [1] (k, n)
     binding: np.ndarray  # gamma_eff [J/m2] (k, n)

@@ -58,7 +58,7 @@ class AdhesiveGrowth(NamedTuple):
 def adhesive_growth(
     psd: xr.Dataset, effective_modulus: float, work_of_adhesion: str | float, highest: float
 ) -> AdhesiveGrowth | None:
-    """Return the ratio of contact areas with and without adhesion, tabulated up to a pressure.
+    """Return a table of the ratio of contact areas with and without adhesion, by pressure.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ from tribolab.units.stamping import labelled, stamp
 
 GapVariant = Literal["flow", "plain"]
 _PER_DECADE = 20  # number of magnifications per decade
-COMPLETE = 1e-2  # mean separation over cut-off below which the contact is complete
+COMPLETE = 1e-2  # ratio of mean separation to cut-off, below which the contact is complete
 _FRONT = 0.01  # share of the open area that opens first, where u1 = d(u A)/dA is nearly 0/0
 _MAX_HEIGHTS = 8.0  # distance from the mean, in rms heights, beyond which a Gaussian is negligible
 _NEGLIGIBLE = 1e-9  # share of the open area that may be neglected

@@ -24,8 +24,8 @@ from tribolab.units.stamping import stamp
 # reproduces both widths that they print.
 WIDTH_LEVEL = 1e-3
 _STEPS = 100
-_CONVERGED = 1e-10  # change in the last step over the maximum pressure
-_FLAT = 1e-6  # mean separation over h_rms at which contact is taken as complete
+_CONVERGED = 1e-10  # change in the last step, relative to the maximum pressure
+_FLAT = 1e-6  # ratio of mean separation to h_rms, below which contact is complete
 
 
 @over_dims(psd=("wavenumber",))

@@ -1,4 +1,4 @@
-"""Dry contact of a rough ball at rest on a flat: pressure and separation over the radius."""
+"""Dry contact of a rough ball at rest on a flat: pressure and separation by radius."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def rough_point_contact(
     rings: int = 120,
     area: AreaTheory = "persson",
 ) -> xr.Dataset:
-    """Return pressure and mean separation over the radius of a dry, rough point contact at rest.
+    """Return pressure and mean separation, by radius, of a dry, rough point contact at rest.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ _ROUNDING = 1e-14  # relative step below which Newton's method stops
 
 @dataclass(frozen=True, eq=False)
 class Separation:
-    """Contact pressure p(u) of a rough surface over mean separation u, and its inverse u(p).
+    """Contact pressure p(u) of a rough surface at mean separation u, and its inverse u(p).
 
     Made by `separation_table`. Monotone everywhere: inside the table ln p is a cubic in
     ``U = ln(exp(u/h_rms) - 1)`` with the theory's own slopes; it is extrapolated at larger u as
@@ -173,7 +173,7 @@ class Separation:
 def separation_table(
     psd: xr.Dataset, effective_modulus: str | float, gamma: float = 0.45, points: int = 120
 ) -> Separation:
-    """Return a table of contact pressure over mean separation for one surface.
+    """Return a table of contact pressure against mean separation for one surface.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ def _gaussian_beyond(table: FactorTable, values: np.ndarray, height: float) -> F
 
 
 def pressure_of_numerics(table: Separation) -> Separation:
-    """Return p(u) increased by 17 % below 0.14 h_rms, the largest difference from numerics.
+    """Return p(u) raised at small separations by 17 %, its largest deviation from numerics.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ class FactorTable:
         object.__setattr__(self, "_curve", PPoly(both, curve.x))
 
     def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return factors and their slopes over u, each (factor, shape of u)."""
+        """Return the factors at mean separations u and their derivatives by u (factor, ...)."""
         distance = np.maximum(u - self.origin, 0)
         first, last = self._curve.x[0], self._curve.x[-1]
         with np.errstate(divide="ignore", invalid="ignore"):

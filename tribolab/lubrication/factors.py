@@ -52,7 +52,7 @@ class Factors(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FlowFactors:
-    """Flow and friction factors of one surface over mean separation; constant if smooth.
+    """Flow and friction factors of one surface at mean separations; constant if smooth.
 
     Made by `flow_factors` or `smooth_factors`.
 

@@ -60,7 +60,7 @@ def graded_mesh(
     The inverse is cached for the last few meshes: it depends only on the cells, because lengths are
     in units of b and the length scale of the kernel is included in the constant of Eq. (9).
     """
-    # samples of the density of cells: equal steps of asinh((x -+ 1)/edge)
+    # positions at which the density of cells is computed: equal steps of asinh((x -+ 1)/edge)
     inlet, outlet = inlet / size, outlet / size
     reach = np.arcsinh((max(inlet, outlet) + 1) / edge)
     near = edge * np.sinh(np.linspace(-reach, reach, 4001))

@@ -1,4 +1,4 @@
-"""Computed Stribeck curves: friction coefficient over speed and load."""
+"""Computed Stribeck curves: friction coefficient as a function of speed and load."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def stribeck_curve(
     solver: Solver | None = None,
     **options: Any,
 ) -> xr.Dataset:
-    """Return the friction coefficient of a lubricated rough contact over sliding speed and load.
+    """Return the friction coefficient of a lubricated rough contact at given speeds and loads.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ from tribolab.lubrication.parameters import Liquid
 
 _SUBSTEPS = 100  # largest number of failed steps
 _FINEST = 1e-2  # smallest step in ln v
-_THICK = 5.0  # film thickness over h_rms that counts as thick
+_THICK = 5.0  # ratio of film thickness to h_rms, from which a film is thick
 _GROWTH = np.log(4.0)  # largest change of ln(film) in an extrapolation to the next speed
 _START_POINTS = 101  # points of the dry contact that is the start
 _DECADES = 12  # decades searched below the first speed for one that can be solved from rest

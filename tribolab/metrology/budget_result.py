@@ -1,4 +1,4 @@
-"""Uncertainty budget as a result, with a table for publication."""
+"""Result of an uncertainty budget, with a table for publication."""
 
 from __future__ import annotations
 
