@@ -133,10 +133,7 @@ def apparent_contact_area_ratio(
 
 @over_dims(psd=("wavenumber",))
 def mean_separation(
-    pressure: str | Pressure,
-    psd: xr.Dataset,
-    effective_modulus: str | float,
-    gamma: float = 0.45,
+    pressure: str | Pressure, psd: xr.Dataset, effective_modulus: str | float, gamma: float = 0.45
 ) -> Pressure:
     """Return the mean interfacial separation of a rough contact at given pressures.
 

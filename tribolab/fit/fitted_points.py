@@ -92,11 +92,7 @@ def points(
 
 
 def valid_range(
-    speed: np.ndarray,
-    mu: np.ndarray,
-    fluid: np.ndarray,
-    area: np.ndarray,
-    errors: PointErrors,
+    speed: np.ndarray, mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, errors: PointErrors
 ) -> tuple[float, float]:
     """Return the widest range of neighbouring speeds (in ln v) that one sigma_f describes."""
     best, widest = (np.nan, np.nan), 0.0

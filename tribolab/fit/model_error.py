@@ -286,11 +286,7 @@ def _reuse_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:
 
 
 def _range(
-    given: Range | None,
-    value: float,
-    unit: str,
-    name: str,
-    least: float = 0.0,
+    given: Range | None, value: float, unit: str, name: str, least: float = 0.0
 ) -> tuple[float, float] | None:
     """Return a range in SI after checking that it contains the value and stays above `least`."""
     if given is None:

@@ -280,10 +280,7 @@ def _shift_state(
 
 
 def _extrapolation(at: list[float], aim: float) -> list[float]:
-    """Return the weights of the last solutions in an extrapolation to ln v = `aim`.
-
-    A parabola if the last steps in ln v are similar, else a secant, or the last solution.
-    """
+    """Return the weights that extrapolate the last solutions to ln v = `aim`."""
     if len(at) < 2 or at[-1] == at[-2]:
         return [1.0]
     step, ahead = at[-1] - at[-2], aim - at[-1]

@@ -116,10 +116,7 @@ def runs_for_half_interval(
 
 @functools.lru_cache(maxsize=64)
 def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float64]:
-    """Return, by number of runs, the variance ratio not exceeded with the given probability.
-
-    The ratio is that of the estimated to the true variance, or to the variance of the pilot.
-    """
+    """Return, by number of runs, the ratio of variances not exceeded with a probability."""
     if pilot_runs is not None:
         chance = 0.5 if assurance is None else assurance
         return np.asarray(special.fdtri(_RUNS - 1, pilot_runs - 1, chance))

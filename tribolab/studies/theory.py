@@ -173,7 +173,7 @@ class Theory:
         return stops
 
     def boundary_onset(self, row: Published, share: float) -> float:
-        """Return the speed [m/s] at which friction has fallen to a given share of the dry friction."""
+        """Return the speed [m/s] at which friction is a given share of dry friction."""
         speed, friction = self._slow(row.surface, self.load(row))
         return float(np.exp(np.interp(-share, -friction, np.log(speed))))
 

@@ -148,11 +148,7 @@ def _response(
 
 
 def _project(
-    model: JointModel,
-    theta: np.ndarray,
-    surface: int,
-    columns: list[int],
-    band: xr.Dataset,
+    model: JointModel, theta: np.ndarray, surface: int, columns: list[int], band: xr.Dataset
 ) -> dict[str, np.ndarray]:
     """Return the parameter changes equivalent to both ends of each variation (end, parameter)."""
     load = float(band.attrs["load_N_m"])

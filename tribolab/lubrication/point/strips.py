@@ -27,10 +27,7 @@ _LEAK, _OBLIQUE = 0.88, 5 / 3  # entrainment speed of a strip, v' = 0.88 v cos^(
 
 
 def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray:
-    """Return a mask of the speeds [m/s] at which the strip approximation is valid.
-
-    It is valid for thin films of a Newtonian liquid on a half-space.
-    """
+    """Return a mask of the speeds [m/s] at which strips are valid: thin Newtonian films."""
     contact = system.contact
     if system.contact.thickness < np.inf or system.liquid.thinning or not contact.is_round:
         return np.zeros(np.shape(speed), dtype=bool)
