@@ -16,11 +16,7 @@ from tribolab.reading.dialect.find import Dialect, Instrument
 from tribolab.reading.file_patterns import is_pattern
 from tribolab.reading.folder_content import files_with
 from tribolab.reading.raw.source import read_unchanged
-from tribolab.reading.scans.extent import (
-    RefusedScanError,
-    doubt_about_heights,
-    impossible_heights,
-)
+from tribolab.reading.scans.extent import RefusedScanError, doubt_about_heights, impossible_heights
 from tribolab.reading.scans.formats.undescribed import is_own_text
 from tribolab.reading.scans.read_scan import files_of, read_known_scans, stacked
 from tribolab.reading.unknown.proposal.questions import (
@@ -29,12 +25,7 @@ from tribolab.reading.unknown.proposal.questions import (
     questions,
     understood_columns,
 )
-from tribolab.reading.unknown_run import (
-    DRAFTED,
-    draft_of,
-    left_open,
-    measures_other_things,
-)
+from tribolab.reading.unknown_run import DRAFTED, draft_of, left_open, measures_other_things
 from tribolab.units.stamping import stamp
 
 _TRACE = ", trace "

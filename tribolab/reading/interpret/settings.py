@@ -8,12 +8,7 @@ from collections.abc import Mapping
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches, split_unit
-from tribolab.reading.interpret.phrases import (
-    LONGEST_LINE,
-    Phrase,
-    label_of,
-    phrases,
-)
+from tribolab.reading.interpret.phrases import LONGEST_LINE, Phrase, label_of, phrases
 from tribolab.reading.lexicon.lexicon import (
     alternatives,
     key_pattern,

@@ -12,11 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.reading.interpret.names import (
-    KNOWN_WORD,
-    Match,
-    is_count,
-)
+from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count
 from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
 from tribolab.reading.runs.force_ratio import LARGEST
 from tribolab.reading.unit_texts import converts

@@ -7,13 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.reading.interpret.amounts import Amount
-from tribolab.reading.interpret.names import (
-    KNOWN_WORD,
-    Match,
-    is_count,
-    is_track_radius,
-    matches,
-)
+from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count, is_track_radius, matches
 from tribolab.reading.interpret.physics import Candidate, Proof, known_quantities, prove
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 from tribolab.reading.unit_texts import converts

@@ -10,12 +10,7 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.lexicon.lexicon import (
-    UNPARTED,
-    normalise_label,
-    part_pattern,
-    role_of,
-)
+from tribolab.reading.lexicon.lexicon import UNPARTED, normalise_label, part_pattern, role_of
 from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.evidence import (
     BOTH_FORCES,

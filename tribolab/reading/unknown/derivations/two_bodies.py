@@ -11,12 +11,7 @@ import numpy as np
 from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.lexicon.lexicon import (
-    normalise_label,
-    pairs_of_bodies,
-    part_pattern,
-    role_of,
-)
+from tribolab.reading.lexicon.lexicon import normalise_label, pairs_of_bodies, part_pattern, role_of
 from tribolab.reading.unit_texts import converts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.layout.text_layout import Layout

@@ -9,11 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.core.errors import shown
-from tribolab.reading.interpret.phrases import (
-    label_of,
-    phrases,
-    single_number,
-)
+from tribolab.reading.interpret.phrases import label_of, phrases, single_number
 from tribolab.reading.lexicon.lexicon import (
     alternatives,
     key_pattern,

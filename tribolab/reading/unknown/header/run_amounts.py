@@ -6,12 +6,7 @@ import re
 from collections.abc import Sequence
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
-from tribolab.reading.lexicon.lexicon import (
-    key_pattern,
-    normalise_label,
-    part_pattern,
-    role_of,
-)
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern, role_of
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unit_texts import is_per_minute
 from tribolab.reading.unknown.header.factors import contacts_in
