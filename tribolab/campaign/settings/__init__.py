@@ -1,1 +1,1 @@
-"""What the user writes: the campaign file and the review file, read, checked and planned."""
+"""Settings that the user writes: the campaign file and the review file."""

@@ -1,4 +1,4 @@
-"""Tables of the campaign file that say how runs and scans are analysed and judged."""
+"""Tables of the campaign file with options for the analysis and checks of runs and scans."""
 
 from __future__ import annotations
 
@@ -90,10 +90,10 @@ class Qc(Table):
 
     @property
     def _by_default(self) -> bool:
-        return not (self.limits or self.skip)  # then the checks, half a second, need no import
+        return not (self.limits or self.skip)  # importing the checks takes half a second
 
     def run_options(self) -> Arguments:
-        """Return limits and names to skip, as far as they are of checks on runs."""
+        """Return the limits of the checks on runs, and the names of those to skip."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
         from tribolab.qc.run.checks import RUN_CHECKS  # imported late for a quick start
@@ -101,7 +101,7 @@ class Qc(Table):
         return self._of(RUN_CHECKS)
 
     def scan_options(self) -> Arguments:
-        """Return limits and names to skip, as far as they are of checks on scans."""
+        """Return the limits of the checks on scans, and the names of those to skip."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
         from tribolab.qc.scan.checks import SCAN_CHECKS  # imported late for a quick start

@@ -1,4 +1,4 @@
-"""The campaign file: what was measured, where the raw files lie, how to analyse them."""
+"""The campaign file: what was measured, where the raw files are, and how to analyse them."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Campaign(Table):
         return self._file
 
     def set_file(self, path: Path) -> None:
-        """Say where the campaign file lies: its folders are relative to it."""
+        """Set the path of the campaign file, to which its folders are relative."""
         self._file = path
 
     def quality_options(self, entry: RunEntry) -> Arguments:
@@ -96,12 +96,12 @@ class Campaign(Table):
         return options
 
     def stated_errors(self, of_instruments: Mapping[str, float]) -> dict[str, float]:
-        """Return the standard uncertainties by name: an instrument's file, this one before it.
+        """Return the standard uncertainties by name; the campaign file overrides instruments.
 
         Parameters
         ----------
         of_instruments
-            As the files of the instruments state them.
+            Standard uncertainties by name, as stated in the files of the instruments.
         """
         own = {name: entry["standard"] for name, entry in self.uncertainty.plain().items()}
         return {**of_instruments, **own}
@@ -112,9 +112,9 @@ class Campaign(Table):
         of_instruments: Mapping[str, float] | None = None,
         recorded: Recorded | None = None,
     ) -> MediumViscosity | None:
-        """Return the viscosity of a medium, stated or from its temperature; None if not known.
+        """Return the viscosity of a medium, stated or from its temperature; None if unknown.
 
-        Of a shear-thinning liquid it is that at rest.
+        For a shear-thinning liquid it is the viscosity at the lowest measured shear rate.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class Campaign(Table):
         of_instruments
             Standard uncertainties by name, as the files of the instruments state them.
         recorded
-            Temperature of the runs, which goes before that of the table.
+            Temperature recorded in the runs; it overrides the temperature in the table.
         """
         table = self.medium.get(medium)
         if table is None:
@@ -152,7 +152,7 @@ class Campaign(Table):
         return table.temperature is not None and (known or table.viscosity_per_kelvin is not None)
 
     def flow_curve_of(self, medium: str) -> FlowCurve | None:
-        """Return the viscosity of a medium over the shear rate; None of a Newtonian liquid.
+        """Return the flow curve of a medium (viscosity against shear rate); None if not stated.
 
         Raises
         ------
@@ -167,7 +167,7 @@ class Campaign(Table):
         return read_flow_curve(self.raw / table.flow_curve)
 
     def contradicting_viscosities(self) -> dict[str, str]:
-        """Return what contradicts the stated viscosity of a medium, by its name."""
+        """Return a message for each medium whose stated viscosity contradicts its known liquid."""
         found = {
             name: contradicting_viscosity(
                 table.liquid or name, table.viscosity, table.temperature, table.water_content
@@ -192,13 +192,13 @@ class Campaign(Table):
         return self._file.parent / self.campaign.output
 
     def friction_options(self, entry: RunEntry) -> Arguments:
-        """Arguments of `friction_coefficient` for the runs of an entry."""
+        """Return the arguments of `friction_coefficient` for the runs of a [[run]] table."""
         stated = {"zero_uncertainty": entry.zero_uncertainty, "rectified": entry.rectified}
         known = {key: value for key, value in stated.items() if value is not None}
         return self.friction.model_dump() | known
 
     def segment_options(self, entry: RunEntry) -> Arguments:
-        """Arguments of `find_segments` for the runs of an entry: its own over the campaign's."""
+        """Return the arguments of `find_segments`; those of the [[run]] override the campaign's."""
         of_curves = {"speed_tolerance"}
         options = self.segments.model_dump(exclude_none=True, exclude=of_curves)
         limits = self.qc.limits.get("segments", {})

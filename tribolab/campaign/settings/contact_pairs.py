@@ -1,4 +1,4 @@
-"""Pairs of a surface and a contact, which curves, models and the report call a surface."""
+"""Pairs of a surface and a contact; curves, models and the report call each pair a surface."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ContactPair:
-    """A surface in one of the contacts: what a curve, its model and the report call a surface.
+    """A surface in one of the contacts; curves, models and the report call the pair a surface.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class ContactPair:
 
 
 def pair_label(surface: str, contact: str) -> str:
-    """Return what a surface is called in a contact.
+    """Return the name of a surface, followed by the name of its contact if it has one.
 
     Examples
     --------
@@ -66,12 +66,12 @@ def contact_pairs(campaign: Campaign, used: Iterable[str] | None = None) -> list
 
 
 def contact_of_label(campaign: Campaign, label: str) -> Contact:
-    """Return the contact that a surface is called by, see `ContactPair.label`."""
+    """Return the contact that belongs to a label, see `ContactPair.label`."""
     return campaign.contact.by_name[_name_of_label(campaign, label)]
 
 
 def contact_table(campaign: Campaign, label: str) -> str:
-    """Return the table of the contact that a surface is called by, as the file writes it."""
+    """Return the name of the contact table that belongs to a label, as in the campaign file."""
     name = _name_of_label(campaign, label)
     return f"[contact.{name}]" if name else "[contact]"
 

@@ -10,7 +10,7 @@ from pydantic import ConfigDict
 from tribolab.campaign.settings.fields import SomeText
 from tribolab.campaign.settings.measured import Contact
 
-# what [contact] states of its own rubber is not that of another modulus
+# not inherited from [contact] by a contact with its own modulus: it is another rubber
 _OF_THE_MODULUS = ("youngs_modulus_range", "modulus_file", "sweep", "modulus_unit")
 
 
@@ -27,12 +27,12 @@ class Contacts(Contact):
 
     @property
     def by_name(self) -> dict[str, Contact]:
-        """Contacts by name, the one without a name ("") first, each with what it leaves out."""
+        """Contacts by name, [contact] ("") first; missing keys are taken from [contact]."""
         return {"": self} | {name: self._completed(own) for name, own in self.named.items()}
 
     @property
     def named(self) -> Mapping[str, Contact]:
-        """The tables [contact.NAME] by name, as they are stated."""
+        """Tables [contact.NAME] by name, without the keys of [contact]."""
         return self.__pydantic_extra__ or {}
 
     def _completed(self, own: Contact) -> Contact:

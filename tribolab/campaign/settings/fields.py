@@ -1,4 +1,4 @@
-"""What the keys of the campaign file hold: texts, patterns, quantities and uncertainties."""
+"""Types of the values in a campaign file: texts, patterns, quantities and uncertainties."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+(?:\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$
 
 @dataclass(frozen=True)
 class Si:
-    """Mark of a quantity: text with a unit in the file, a float in SI afterwards.
+    """Annotation of a quantity: text with a unit in the file, converted to a float in SI.
 
     Parameters
     ----------
     unit
-        Of the float.
+        SI unit of the float.
     example
-        What the file may say.
+        Example of the text in the file.
     """
 
     unit: str
@@ -44,13 +44,13 @@ class Si:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        """Convert what the file says before it is taken as a float."""
+        """Return the pydantic schema that converts the text to a float in SI."""
         return core_schema.with_info_before_validator_function(self._converted, handler(source))
 
     def __get_pydantic_json_schema__(
         self, core: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        """Return what an editor knows of it."""
+        """Return the JSON schema of the quantity, for editors."""
         return {
             "type": "string",
             "pattern": _NUMBER_WITH_UNIT,
@@ -70,12 +70,12 @@ class Si:
 
 
 class PositiveSi(Si):
-    """Mark of a quantity that is greater than zero."""
+    """Annotation of a quantity that is greater than zero."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        """Refuse zero and what is below."""
+        """Return the pydantic schema that refuses zero and negative values."""
         converted = super().__get_pydantic_core_schema__(source, handler)
         return core_schema.no_info_after_validator_function(_positive, converted)
 
@@ -102,7 +102,7 @@ Patterns = Annotated[
 
 
 def _name_pattern(value: Any) -> Any:
-    """Check that a pattern names something."""
+    """Check that a pattern contains at least one label."""
     if isinstance(value, str):
         try:
             NamePattern(value)
@@ -128,7 +128,7 @@ def _number_or_text(example: str, **limits: float) -> WithJsonSchema:
     return WithJsonSchema({"anyOf": [{"type": "number", **limits}, text]})
 
 
-# a part of something, below one half: its two ends may be cut off
+# fraction below one half: it is cut off at both ends
 ShareOfEnds = Annotated[
     float,
     Field(ge=0, lt=0.5),
@@ -137,7 +137,7 @@ ShareOfEnds = Annotated[
 ]
 
 
-# a part of something, up to all of it
+# fraction of a stroke, up to 1
 MiddleShare = Annotated[
     float,
     Field(gt=0, le=1),
@@ -146,7 +146,7 @@ MiddleShare = Annotated[
 ]
 
 
-# a part of a mass, up to all of it
+# mass fraction, up to 1
 ShareOfMass = Annotated[
     float,
     Field(ge=0, le=1),
@@ -156,7 +156,7 @@ ShareOfMass = Annotated[
 
 
 def _place(value: Any) -> str:
-    """Check where a zero is read."""
+    """Check the text that states where the zero is read."""
     try:
         parse_zero(str(value))
     except UnitError as error:
@@ -168,7 +168,7 @@ ZeroPlace = Annotated[str, BeforeValidator(_place), Field(examples=["first 2 s"]
 
 
 def _discard(value: Any) -> str:
-    """Check how much of the beginning of a run is left out."""
+    """Check the text that states how much of the start of a run is left out."""
     try:
         discard_amount(str(value))
     except UnitError as error:
@@ -180,7 +180,7 @@ Discard = Annotated[str, BeforeValidator(_discard), Field(examples=["50 m", "60 
 
 
 def _spread(value: Any) -> str:
-    """Check an uncertainty of a force or torque, or of a coefficient that alone was recorded."""
+    """Check an uncertainty: of a force, a torque, or a recorded friction coefficient."""
     if isinstance(value, str):
         for unit in ("N", "1", "N m"):
             with contextlib.suppress(UnitError):
@@ -192,7 +192,7 @@ def _spread(value: Any) -> str:
     )
 
 
-# text until the signal that it is for says its unit
+# stays text, because its unit depends on the signal to which it applies
 Spread = Annotated[
     str,
     BeforeValidator(_spread),

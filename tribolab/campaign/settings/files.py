@@ -1,4 +1,4 @@
-"""Files that a campaign file names: patterns resolved, and what they are called in reports."""
+"""Files named in a campaign file: the files that match patterns, and their labels in reports."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def scan_files(campaign: Campaign) -> list[Path]:
 
 
 def modulus_files(campaign: Campaign) -> list[Path]:
-    """Return the files of the moduli that the contacts name, each once."""
+    """Return the modulus files named in the contact tables, each once."""
     named = (contact.modulus_file for contact in campaign.contact.by_name.values())
     return [campaign.raw / name for name in dict.fromkeys(named) if name is not None]
 
 
 def flow_curve_files(campaign: Campaign) -> list[Path]:
-    """Return the files of the flow curves that the media name, each once."""
+    """Return the flow-curve files named in the medium tables, each once."""
     named = (medium.flow_curve for medium in campaign.medium.values())
     return [campaign.raw / name for name in dict.fromkeys(named) if name is not None]
 
@@ -47,7 +47,7 @@ def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
 
 
 def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
-    """Return every file that a campaign reads, and what it is in words."""
+    """Return every file that a campaign reads, with its kind in words."""
     inputs = [(campaign.file, "the campaign file")]
     inputs.append((campaign.file.parent / REVIEW_FILE, "the review file"))
     for entry in campaign.run:
@@ -63,9 +63,9 @@ def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
 
 
 def inputs_outside(campaign: Campaign) -> list[Path]:
-    """Return the files that a campaign reads outside of its own folder and that of its raw files.
+    """Return the files that a campaign reads outside its own folder and its raw folder.
 
-    Links are followed. Who publishes the results of a campaign made by others shows these files.
+    Links are followed. Publishing the results of someone else's campaign exposes these files.
     """
     homes = [campaign.file.resolve().parent, campaign.raw.resolve()]
     named = [path for path, _ in inputs_of(campaign)]
@@ -78,12 +78,12 @@ def inputs_outside(campaign: Campaign) -> list[Path]:
 
 
 def instrument_of(campaign: Campaign, name: str) -> str:
-    """Name of an instrument as it is; a file of its own relative to the campaign file."""
+    """Return the name of an instrument; a file gets its path relative to the campaign file."""
     return str(campaign.file.parent / name) if name.endswith(_OWN) else name
 
 
 def own_python(campaign: Campaign) -> list[str]:
-    """Return the readers in Python that a campaign names by their files."""
+    """Return the Python files that a campaign names as readers."""
     return [name for name in _instruments(campaign) if name.endswith(".py")]
 
 
@@ -100,7 +100,7 @@ def resolve_patterns(
     where: tuple[str | int, ...],
     problems: list[SettingsProblem],
 ) -> list[Path]:
-    """Return the files of patterns, each once; adds to the problems where nothing matches."""
+    """Return the files that match patterns, each once; a pattern without files adds a problem."""
     files: dict[Path, None] = {}
     for pattern in patterns:
         matching = matching_files(raw, pattern)
@@ -115,10 +115,10 @@ def resolve_patterns(
 
 
 def matching_files(raw: Path, pattern: str) -> list[Path]:
-    """Return the files below the raw folder that a pattern means, in their natural order."""
+    """Return the files in the raw folder that match a pattern, in natural order."""
     exact = raw / pattern
     try:
-        if exact.is_file():  # brackets in a real name are no wildcards
+        if exact.is_file():  # brackets in the name of an existing file are not wildcards
             return [exact]
         files = [path for path in raw.glob(pattern) if path.is_file()]
     except (OSError, ValueError, NotImplementedError):  # absolute, empty, or too long a name
@@ -127,7 +127,7 @@ def matching_files(raw: Path, pattern: str) -> list[Path]:
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:
-    """Key under which cycle 2 comes before cycle 10."""
+    """Return a sort key that puts cycle 2 before cycle 10."""
     return [
         (part.isdigit(), int(part) if part.isdigit() else 0, part)
         for part in re.split(r"(\d+)", text)
@@ -135,7 +135,7 @@ def _natural(text: str) -> list[tuple[bool, int, str]]:
 
 
 def _there(raw: Path, pattern: str) -> str:
-    """Say what is in the folder where the pattern stops to match, or that it names that folder."""
+    """Return a hint on why a pattern matches nothing, e.g. the files in the folder."""
     parts = Path(pattern).parts
     if _is_special(raw / pattern):
         return "; it is no regular file (a pipe, socket or device): write its content to a file"
@@ -167,12 +167,12 @@ def _is_special(path: Path) -> bool:
 def _is_folder(path: Path) -> bool:
     try:
         return path.is_dir()
-    except (OSError, ValueError):  # no name that a folder could have
+    except (OSError, ValueError):  # not a possible name of a folder
         return False
 
 
 def sha256_of_dialect(instrument: str) -> str:
-    """Return the checksum of what describes an instrument."""
+    """Return the checksum of the dialect or reader of an instrument."""
     # imported late for a quick start
     from tribolab.reading.dialect.find import known_dialects
     from tribolab.reading.raw.readers import is_reader, source_of
@@ -183,5 +183,5 @@ def sha256_of_dialect(instrument: str) -> str:
 
 
 def label_of(campaign: Campaign, file: Path) -> str:
-    """Return a file relative to the campaign file, as reports show it."""
+    """Return the path of a file relative to the campaign file, as reports show it."""
     return as_text(Path(os.path.relpath(file, campaign.file.parent)).as_posix())

@@ -1,4 +1,4 @@
-"""A campaign file is read, and checked against itself and what lies beside it."""
+"""Reading and checking of a campaign file."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ def load_campaign(path: str | Path) -> Campaign:
 
 
 def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
-    """Read and check a campaign file, and return its runs with it; else as `load_campaign`."""
+    """Read and check a campaign file; return the campaign and its planned runs."""
     missing = "'tribolab demo' makes a campaign to start from"
     file = open_settings(
         settings_path(path, "campaign.toml"), Campaign, "campaign", missing, move_keys
     )
     file.content.set_file(file.path)
-    # names first: no file is looked at with an instrument that nobody knows
+    # check names first: files cannot be read with an unknown instrument
     if wrong := of_names(file.content):
         raise file.error(wrong)
     campaign = with_named_parts(file.content)

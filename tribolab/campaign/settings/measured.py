@@ -1,4 +1,4 @@
-"""Tables of the campaign file that say what was measured: contact, media, surfaces, runs."""
+"""Tables of the campaign file on what was measured: contact, media, surfaces, runs."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Contact(Table):
     """Unit of the moduli in `modulus_file`, if the file does not state it."""
 
     def bodies(self) -> Arguments:
-        """Return the arguments of `make_contact`; None for what is wanted and not known."""
+        """Return the arguments of `make_contact`; required ones that are unknown are None."""
         ball = self.geometry == "ball"
         wanted = {"radius", "youngs_modulus", "poisson_ratio"} | (set() if ball else {"length"})
         bodies = self.model_dump(include=wanted)
@@ -68,7 +68,7 @@ class Contact(Table):
         return bodies | ({"geometry": "ball"} if ball else {})
 
     def whole(self) -> LineContact | PointContact | None:
-        """Return the contact; None as long as something of it is not known."""
+        """Return the contact; None if a required property is unknown."""
         from tribolab.contact.geometry import make_contact  # imported late for a quick start
 
         bodies = self.bodies()

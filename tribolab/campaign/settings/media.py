@@ -16,11 +16,11 @@ class MediumViscosity(NamedTuple):
     Parameters
     ----------
     value
-        [Pa s]
+        Viscosity [Pa s].
     error
-        Relative standard uncertainty [1]; 0 where nothing is known of it.
+        Relative standard uncertainty [1]; 0 if unknown.
     bounds
-        Between which values [Pa s] it is with 95 %; None where nothing is known.
+        Range [Pa s] with 95 % coverage; None if unknown.
     """
 
     value: float
@@ -37,7 +37,7 @@ VISCOSITY_DIFFERS = Limit(
 def contradicting_viscosity(
     name: str, viscosity: float | None, temperature: float | None, water_content: float | None
 ) -> str:
-    """Say that a stated viscosity is not that of the liquid as stated; "" if they agree.
+    """Return a message if a stated viscosity differs from that of the known liquid; else "".
 
     Parameters
     ----------
@@ -60,18 +60,18 @@ def contradicting_viscosity(
 
 
 class LiquidStated(NamedTuple):
-    """What a table [medium.NAME] states of a liquid.
+    """Properties of a liquid, as stated in a table [medium.NAME].
 
     Parameters
     ----------
     name
-        What it is called; liquids that are known by name tell how temperature and water act.
+        Name; for known liquids the effect of temperature and water is computed.
     viscosity, bounds
-        [Pa s]; None if not stated.
+        Viscosity and its range [Pa s]; None if not stated.
     temperature, water_content
-        [K], mass fraction [1].
+        Temperature [K], and mass fraction of water [1].
     per_kelvin
-        By how much the viscosity falls with each kelvin [1/K]; None if not stated.
+        Relative decrease of the viscosity per kelvin [1/K]; None if not stated.
     """
 
     name: str
@@ -83,7 +83,7 @@ class LiquidStated(NamedTuple):
 
 
 class Recorded(NamedTuple):
-    """Temperature [K] that runs recorded, and its standard deviation along a curve [K]."""
+    """Mean temperature recorded in the runs of a curve, and its standard deviation [K]."""
 
     temperature: float
     spread: float
@@ -97,17 +97,16 @@ def medium_viscosity(
     Parameters
     ----------
     liquid
-        As the campaign file states it.
+        The liquid as stated in the campaign file.
     stated
-        Standard uncertainties by name, of which those of temperature [K] and water content [1]
-        count.
+        Standard uncertainties by name; temperature [K] and water_content [1] are used.
     recorded
-        Temperature of the runs: the viscosity is that at it, if its change is known.
+        Temperature of the runs, at which the viscosity is computed if its change is known.
 
     Raises
     ------
     AnalysisError
-        If the liquid is not one at this temperature.
+        If the substance is not liquid at this temperature.
 
     Examples
     --------
@@ -139,7 +138,7 @@ def medium_viscosity(
     if bounds is not None:
         error = math.log(bounds[1] / bounds[0]) / (2 * NORMAL)
     elif computed is not None:
-        if value is not None:  # measured, not by the formula
+        if value is not None:  # a stated viscosity does not have the error of the formula
             computed = computed._replace(formula=0.0)
         error = computed.uncertainty(kelvin, of_water)
     value = factor * (value if value is not None else computed.value if computed else math.nan)

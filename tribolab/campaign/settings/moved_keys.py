@@ -1,4 +1,4 @@
-"""Keys of older campaign files, moved to their present place."""
+"""Old keys of campaign files and the keys that replace them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tribolab.core.untyped import Json
 from tribolab.friction.segments.limits import DETECTION
 
-MOVED = {  # key before: key now; of [[run]] to another table only if all runs agree
+MOVED = {  # old key: new key; keys move out of [[run]] only if all runs have the same value
     "joint.together": "model.together",
     "joint.dry": "model.dry_medium",
     "contact.area": "model.area",
@@ -18,13 +18,13 @@ MOVED = {  # key before: key now; of [[run]] to another table only if all runs a
     **{f"run.segments.{key}": f"qc.limits.segments.{key}" for key in DETECTION},
 }
 _TO_INSTRUMENT = ("moving_mass", "rectified")  # keys of [[run]] that its file can state
-_COMPUTE = {"always": True, "two loads": True, "never": False}  # [joint] compute, before
+_COMPUTE = {"always": True, "two loads": True, "never": False}  # values of the old [joint] compute
 
 
 def move_keys(content: Json) -> list[str]:
     """Move old keys in the content of a campaign file, and return a line for each.
 
-    A key that contradicts its present place remains where it is, and is then an unknown key.
+    An old key that contradicts the new one is not moved; it is then an unknown key.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def move_keys(content: Json) -> list[str]:
 
 
 def _tables(content: Json, place: str) -> Iterator[Json]:
-    """Yield the tables of a place: every [[run]], and [contact.NAME] with [contact]."""
+    """Yield the tables at a path: every [[run]]; for "contact" also every [contact.NAME]."""
     name, _, inner = place.partition(".")
     found = content.get(name)
     tables = found if isinstance(found, list) else [found]
@@ -79,7 +79,7 @@ def _tables(content: Json, place: str) -> Iterator[Json]:
 
 
 def _set(content: Json, place: str, value: object) -> bool:
-    """Set a key, unless it has another value; return whether it has this one now."""
+    """Set a key unless it has another value; return whether it now has the given value."""
     *names, key = place.split(".")
     table: object = content
     for name in names:

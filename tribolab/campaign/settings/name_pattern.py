@@ -1,4 +1,4 @@
-"""Labels of a run that stand in the names of its files: who measured, on which mount, which day."""
+"""Labels in the names of raw files, e.g. operator, mount and day."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 import regex
 
 _FIELD = re.compile(r"\{([^{}]*)\}|(\*)")
-_MARKS = "_- "  # that separate whole words
+_MARKS = "_- "  # characters that separate labels
 _SECONDS = 0.5
 _MAX_STARS = 6
 

@@ -34,7 +34,7 @@ or, without `unit`, a text. A name that is not a quantity also needs `to`, the S
 keep it. The following names are used by the analysis:
 """
 
-# Names of tables that hold tables of the user's own names, and of lists of tables.
+# Headings of tables whose subtables are named by the user, and of lists of tables.
 _TABLE_NAMES = {
     "contact": "[contact] and [contact.NAME]",
     "medium": "[medium.NAME]",
@@ -72,7 +72,7 @@ _USED_VALUES = {
 
 
 def campaign_page() -> str:
-    """Return the page: tables and keys with meaning, unit or type, and default; quantities.
+    """Return the text of CAMPAIGN.md: all tables and keys, and the quantities of columns.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def campaign_page() -> str:
 
 
 def _reference(field: Mapping[str, Any]) -> str:
-    """Name of the table that a field of the schema refers to, however it is wrapped."""
+    """Return the name of the table to which a field of the schema refers."""
     inner = field.get("items") or field.get("additionalProperties") or field
     return str(inner["$ref"]).rpartition("/")[2]
 
@@ -122,7 +122,7 @@ def _keys(table: Mapping[str, Any]) -> list[str]:
 
 
 def _names(table: Mapping[str, Any]) -> list[str]:
-    """Rows of the names that a table of tables may have."""
+    """Return the rows of the allowed names of subtables."""
     rows = [
         (f"`{name}`", _flat(field["description"]), *map(str, NAMES[name]))
         for name, field in table["properties"].items()
@@ -131,7 +131,7 @@ def _names(table: Mapping[str, Any]) -> list[str]:
 
 
 def _flat(text: str) -> str:
-    """Return a text in one line: a row of a table has no more."""
+    """Return a text in one line, as a row of a Markdown table requires."""
     return " ".join(text.split())
 
 

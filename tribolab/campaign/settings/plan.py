@@ -1,4 +1,4 @@
-"""Which files make which run: patterns resolved, names given, settings collected."""
+"""Plan of the runs of a campaign: files, names and settings of each."""
 
 from __future__ import annotations
 
@@ -32,36 +32,36 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """One run to be processed: all that a worker needs to know.
+    """Run to be processed, with everything that a worker needs.
 
     Parameters
     ----------
     name
-        Unique in the campaign, safe as a file name.
+        Name of the run, unique in the campaign and valid as a file name.
     files
         Raw files, absolute.
     labels
         The same relative to the campaign file, as reports show them.
     surface, medium, mount, specimen
-        "" where the campaign file says nothing.
+        Labels of the run; "" if not stated.
     zero_uncertainty_at
         File, line and number of the [[run]] that states it.
     normal_force, sliding_speed
         Set-points [N, m/s], if the campaign file gives them.
     clock_shift
-        Between the clocks of the two logs [s], if the campaign file gives it.
+        Time to add to the clock of the second log [s], if stated.
     instrument
-        Name of a dialect, or path of a dialect's TOML file, or None: the files tell.
+        Name of a dialect or path of its TOML file; None if it is recognised from the files.
     zero
         Where the zero of the friction signal is read, see `tribolab.read`.
     moving_mass
-        Between contact and force sensor [kg], if the campaign file gives it.
+        Mass between contact and force sensor [kg], if stated.
     stiffness
-        Of the rig in the direction of sliding [N/m], if the campaign file gives it.
+        Stiffness of the rig in the direction of sliding [N/m], if stated.
     contact_area
         Measured contact area [m2], if the campaign file gives it.
     dead_weight
-        Of the reference that it is a run of [N], where one is stated.
+        Dead weight that loads this reference run [N], if stated.
     segments, friction
         Arguments of `find_segments` and `friction_coefficient`.
     quality
@@ -71,9 +71,9 @@ class PlannedRun:
     config_sha256
         Checksum of all of these, and of the dialect's content.
     reading_sha256
-        Checksum of those of them that reading the files depends on.
+        Checksum of the settings that affect the reading of the files.
     decisions
-        What a person decided on it.
+        Decisions of a person on the run.
     """
 
     name: str
@@ -103,14 +103,14 @@ class PlannedRun:
 
 
 class Plan(NamedTuple):
-    """The runs of a campaign, and what is wrong with its patterns."""
+    """Planned runs of a campaign, and the problems with its file patterns."""
 
     runs: tuple[PlannedRun, ...]
     problems: list[SettingsProblem]
 
 
 def plan_runs(campaign: Campaign) -> Plan:
-    """Resolve the patterns of a campaign into runs, in the order of the campaign file."""
+    """Find the files of all runs and plan the runs, in the order of the campaign file."""
     if not campaign.raw.is_dir():
         what = f"there is no folder {campaign.raw}"
         return Plan((), [SettingsProblem(("campaign", "raw"), what)])
@@ -167,7 +167,7 @@ def plan_runs(campaign: Campaign) -> Plan:
 
 
 def _of_moduli(campaign: Campaign) -> list[SettingsProblem]:
-    """Return the moduli that a contact names and that are no files."""
+    """Return a problem for each modulus_file that does not exist or is not a regular file."""
     problems = []
     tables = {(): campaign.contact} | {(n,): t for n, t in campaign.contact.named.items()}
     for where, contact in tables.items():
@@ -179,7 +179,7 @@ def _of_moduli(campaign: Campaign) -> list[SettingsProblem]:
 
 
 def _in_contact(run: PlannedRun, contact: str) -> PlannedRun:
-    """Return a run whose surface is called by its contact, too, if that has a name."""
+    """Add the name of the contact to the surface of a run, if the contact has a name."""
     if not contact:
         return run
     mark = sha256_of([run.config_sha256, contact])
@@ -187,7 +187,7 @@ def _in_contact(run: PlannedRun, contact: str) -> PlannedRun:
 
 
 def _zero_stated_at(campaign: Campaign, number: int) -> str:
-    """Return where the file states the uncertainty of the zero of a [[run]], for its errors."""
+    """Return file, line and [[run]] that state zero_uncertainty, for error messages."""
     if campaign.run[number].zero_uncertainty is None:
         return ""
     text = campaign.file.read_text(encoding="utf-8") if campaign.file.is_file() else ""
@@ -197,7 +197,7 @@ def _zero_stated_at(campaign: Campaign, number: int) -> str:
 
 
 def _named(run: PlannedRun, campaign: Campaign) -> PlannedRun:
-    """Return a run with what the names of its files say and nothing else states."""
+    """Add the properties in the file names to a run, unless they are stated elsewhere."""
     named = named_by_files(campaign.campaign.files_named, run.files)._asdict()
     from_name = {key: value for key, value in named.items() if value and not getattr(run, key)}
     if not from_name:
@@ -206,7 +206,7 @@ def _named(run: PlannedRun, campaign: Campaign) -> PlannedRun:
 
 
 def _weighed(run: PlannedRun, campaign: Campaign, weighed: set[Path]) -> PlannedRun:
-    """Return a run of a reference with its dead weight: it need not slide."""
+    """Add the dead weight to a reference run; such a run need not contain sliding."""
     weight = campaign.reference.dead_weight
     if weight is None or weighed.isdisjoint(run.files):
         return run
@@ -216,7 +216,7 @@ def _weighed(run: PlannedRun, campaign: Campaign, weighed: set[Path]) -> Planned
 
 
 def _decided(run: PlannedRun, decisions: tuple[Decision, ...]) -> PlannedRun:
-    """Return a run with what was decided on it; its checksum tells of these decisions alone."""
+    """Add a person's decisions to a run; its checksum depends on its own decisions only."""
     if not decisions:
         return run
     shaping = [run.config_sha256, *(decision.plain() for decision in decisions)]
@@ -229,7 +229,7 @@ def planned_runs(campaign: Campaign) -> tuple[PlannedRun, ...]:
     Raises
     ------
     ConfigError
-        If its patterns match nothing.
+        If a pattern matches no file.
     """
     resolved = plan_runs(campaign)
     if resolved.problems:
@@ -248,7 +248,7 @@ def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list
 
 
 def _zero(campaign: Campaign, entry: RunEntry) -> tuple[str | None, list[Path]]:
-    """Where the zero is read, and the blank runs in the raw folder that zeros are read from."""
+    """Return where the zero is read, and the files of blank runs that provide zeros."""
     if entry.zero is not None:
         name = parse_zero(entry.zero).file
         blank = campaign.raw / name
@@ -263,7 +263,7 @@ def _zero(campaign: Campaign, entry: RunEntry) -> tuple[str | None, list[Path]]:
 
 
 def _settings(campaign: Campaign, entry: RunEntry) -> Json:
-    """Return what all runs of an entry share, with its checksum."""
+    """Return the settings shared by all runs of a [[run]] table, with their checksums."""
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
     zero, blanks = _zero(campaign, entry)
     settings: Json = {

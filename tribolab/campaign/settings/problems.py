@@ -1,4 +1,4 @@
-"""What is wrong in a campaign file, in words: file, line, key, cure."""
+"""Messages on errors in a campaign file: file, line, key, cure."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     pass
 
 _SHOWN = 5
-_HINTED = 100  # mistakes for which a key's likely name is looked for
+_HINTED = 100  # largest number of mistakes for which a similar key is suggested
 # blank lines and comments, then a key or the name of a table
 _FIRST_KEY = re.compile(r"""(?:[ \t]*(?:#.*)?\r?\n)*[ \t]*(?:\[|["'A-Za-z0-9_.-]+[ \t]*=)""")
 
 
 class SettingsProblem(NamedTuple):
-    """Where in the file (names and numbers of elements), and what is wrong there."""
+    """Error in a settings file: path of the key (names and indices), and description."""
 
     where: tuple[str | int, ...]
     what: str
 
 
 def message(problems: Iterable[SettingsProblem], path: Path, text: str) -> str:
-    """Put problems into words, in the order of the file, one line each."""
+    """Return the message on all problems, one line each, in the order of the file."""
     lines = []
     for problem in problems:
         line = line_of(text, problem.where)
@@ -61,14 +61,14 @@ def _key(where: tuple[str | int, ...]) -> str:
 
 
 def unreadable(error: Exception) -> str:
-    """Say why a TOML text is too much for its parser, though it may be right."""
+    """Return the reason why the parser cannot read a TOML text that may be valid."""
     if isinstance(error, RecursionError):
         return "its lists or tables lie hundreds deep in one another; write them flat"
     return "a number in it has thousands of digits; write it shorter"
 
 
 def toml_error(error: tomllib.TOMLDecodeError, text: str, kind: str) -> str:
-    """Return what the TOML parser says, with the line it means.
+    """Return the message of the TOML parser, with the line that it refers to.
 
     The line is shown only of a text that is a TOML file to its first key or table: of another
     file nothing is told.
@@ -86,7 +86,7 @@ def toml_error(error: tomllib.TOMLDecodeError, text: str, kind: str) -> str:
 
 
 def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[SettingsProblem]:
-    """Turn pydantic's findings into problems that name the cure."""
+    """Return the errors that pydantic found as problems with a cure."""
     problems: dict[tuple[str | int, ...], SettingsProblem] = {}
     items = error.errors(include_url=False)
     for item in items:
@@ -100,7 +100,7 @@ def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Settin
 
 
 def _is_below(outer: tuple[str | int, ...], inner: tuple[str | int, ...]) -> bool:
-    """Whether one location lies below another."""
+    """Whether the location `inner` is inside the location `outer`."""
     return len(inner) > len(outer) and inner[: len(outer)] == outer
 
 
@@ -138,7 +138,7 @@ def _words(item: Any, table: type[BaseModel] | None) -> str:
 def _walk(
     model: type[BaseModel], location: tuple[str | int, ...]
 ) -> tuple[tuple[str | int, ...], type[BaseModel] | None]:
-    """Return the path in the file of pydantic's location, and the table of its last part."""
+    """Return the path of a pydantic location in the file, and the table that contains its key."""
     where: list[str | int] = []
     here: Any = model
     table: type[BaseModel] | None = None

@@ -47,7 +47,7 @@ class DecisionEntry(NoSwitches):
 
     @property
     def decision(self) -> Decision:
-        """What is decided, without the run."""
+        """The decision without the name of the run."""
         return Decision(**self.model_dump(exclude={"run"}))
 
     @model_validator(mode="after")
@@ -115,13 +115,13 @@ def load_entries(path: Path) -> tuple[DecisionEntry, ...]:
 
 
 def read_decisions(campaign_file: Path) -> dict[str, tuple[Decision, ...]]:
-    """Return the decisions that lie beside a campaign file, by run; none without such a file."""
+    """Return the decisions in the review file next to a campaign file, by run."""
     path = campaign_file.parent / REVIEW_FILE
     return load_review(path) if path.exists() else {}
 
 
 def lost_decisions(campaign_file: Path, runs: Iterable[str]) -> tuple[str, ...]:
-    """Say which decisions beside a campaign file are on a run that there is not.
+    """Return a message for each decision in the review file on a run that does not exist.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the tables of a campaign file have in common."""
+"""Base class of the tables of a campaign file."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from tribolab.reading.dialect.checked_text import NoSwitches
 
 
 class Table(NoSwitches):
-    """A table of the campaign file: keys that are not known are errors, nothing can be changed."""
+    """Immutable table of the campaign file, in which unknown keys are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

@@ -1,4 +1,4 @@
-"""Tables of the campaign file that choose what is computed: models and rubber friction."""
+"""Tables of the campaign file on the theory: models and rubber friction."""
 
 from __future__ import annotations
 

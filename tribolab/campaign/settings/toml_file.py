@@ -1,4 +1,4 @@
-"""A TOML file of the user's, read and checked against its model: all that is wrong, at once."""
+"""Reading of settings in TOML; all errors are reported at once."""
 
 from __future__ import annotations
 
@@ -63,19 +63,19 @@ def text_of(path: Path, missing: str) -> str:
 
 @dataclass(frozen=True)
 class Opened(Generic[SettingsModel]):
-    """A file that says what its model wants."""
+    """Settings file that was read and is valid."""
 
     path: Path
     text: str
     content: SettingsModel
 
     def error(self, wrong: list[problems.SettingsProblem]) -> ConfigError:
-        """Return what is still wrong with it, by file and line."""
+        """Return an error with file and line for problems found later."""
         return ConfigError(problems.message(wrong, self.path, self.text))
 
 
 def settings_path(path: str | Path, name: str) -> Path:
-    """Return the file that is meant by itself, or by the folder in which it has its usual name."""
+    """Return the path of a settings file, given itself or the folder that contains it."""
     path = Path(path)
     return (path / name if path.is_dir() else path).absolute()
 
@@ -94,9 +94,9 @@ def open_settings(
     path
         The file.
     model
-        What it has to say.
+        Pydantic model of the content.
     kind
-        What such a file is called.
+        Kind of the file in words, for messages.
     missing
         What to do if there is none.
     update
@@ -132,14 +132,14 @@ def open_settings(
 
 
 def _warn(path: Path, lines: list[str]) -> None:
-    """Warn of old keys, but not in every worker."""
+    """Warn of old keys, in the main process only."""
     if multiprocessing.parent_process() is None:
         for line in lines:
             warnings.warn(f"{path}: {line}", FutureWarning, stacklevel=5)
 
 
 def _check_entries(path: Path, content: dict[str, object]) -> None:
-    """Refuse too many entries, and texts that steer a terminal or a page that shows them."""
+    """Raise if there are too many entries, or texts with control characters."""
     count = 0
     left: list[tuple[str, object]] = list(content.items())
     while left:

@@ -1,4 +1,4 @@
-"""On which line of a TOML text a key stands, so that an error can point at it."""
+"""Line numbers of keys in a TOML text, for error messages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def _parts(dotted: str) -> tuple[str, ...]:
 
 
 def line_of(text: str, where: Sequence[str | int]) -> int | None:
-    r"""Return the line (from 1) on which the key at `where` stands, or the nearest table above it.
+    r"""Return the line (from 1) of the key at `where`, or of the nearest table above it.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def line_of(text: str, where: Sequence[str | int]) -> int | None:
     Returns
     -------
     int or None
-        The line; None if not even the first part of the path stands in the text.
+        The line; None if the text does not contain the first part of the path.
 
     Examples
     --------
@@ -42,13 +42,13 @@ def line_of(text: str, where: Sequence[str | int]) -> int | None:
     return None
 
 
-@functools.lru_cache(maxsize=2)  # one text is asked for every mistake in it
+@functools.lru_cache(maxsize=2)  # called with the same text for every mistake in it
 def _lines(text: str) -> Mapping[tuple[str | int, ...], int]:
-    """Lines of all tables and keys of a text."""
+    """Return the line of each table and key of a text, by its path."""
     lines: dict[tuple[str | int, ...], int] = {}
     table: tuple[str | int, ...] = ()
     counts: dict[tuple[str | int, ...], int] = {}
-    fence = ""  # inside a text of several lines nothing is a key
+    fence = ""  # delimiter of the multi-line text around this line, in which there are no keys
     for number, line in enumerate(text.splitlines(), start=1):
         if fence:
             if line.count(fence) % 2:

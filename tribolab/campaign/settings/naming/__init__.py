@@ -1,1 +1,1 @@
-"""Names in a campaign file: of runs, of files, and what a pattern reads from them."""
+"""Names of runs and files in a campaign, and the labels in them."""

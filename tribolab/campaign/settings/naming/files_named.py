@@ -1,4 +1,4 @@
-"""What the names of raw files say of runs: surface, medium, load, speed, mount, repeat."""
+"""Labels from the names of raw files: surface, medium, load, speed, mount, repeat."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AMOUNTS = {"normal_force": "N", "sliding_speed": "m/s"}
 
 
 class Named(NamedTuple):
-    """What the names of a run's files say of it; "" and None for nothing."""
+    """Properties of a run from the names of its files; "" or None if not named."""
 
     surface: str = ""
     medium: str = ""
@@ -32,14 +32,14 @@ class Named(NamedTuple):
 
 
 def named_by_files(pattern: str | None, files: Sequence[Path]) -> Named:
-    """Return what the names of a run's files say of it.
+    """Return the properties of a run that are stated in the names of its files.
 
     Parameters
     ----------
     pattern
         ``files_named`` of the campaign file, e.g. "{surface}_{medium}_{normal_force}_{repeat}".
     files
-        Of one run.
+        Files of one run.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def named_by_files(pattern: str | None, files: Sequence[Path]) -> Named:
 
 
 def with_named_parts(campaign: Campaign) -> Campaign:
-    """Return the campaign with the surfaces and media that only the names of files state."""
+    """Add the surfaces and media that are named only in file names to a campaign."""
     pattern = campaign.campaign.files_named
     if pattern is None:
         return campaign
@@ -96,12 +96,12 @@ def _new(names: Iterable[str], known: Iterable[str]) -> list[str]:
 
 
 def pattern_of_names(names: Sequence[str]) -> str | None:
-    """Return the pattern that the names of runs follow; None if they follow none.
+    """Return the pattern that the file names of the runs follow; None if there is none.
 
     Parameters
     ----------
     names
-        Of the runs' files, without endings.
+        Names of the files without extension.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def pattern_of_names(names: Sequence[str]) -> str | None:
 
 
 def _pattern_parted_by(mark: str, names: Sequence[str]) -> str | None:
-    """Return the pattern of names whose labels a mark separates; None if they follow none."""
+    """Return the pattern of names whose labels are separated by `mark`; None if there is none."""
     rows = [name.split(mark) for name in names]
     found: list[str] = []
     while rows and min(map(len, rows)) > 1:
@@ -132,7 +132,7 @@ def _pattern_parted_by(mark: str, names: Sequence[str]) -> str | None:
 
 
 def _label_of(words: Sequence[str]) -> str:
-    """Return what the last words of names say: repeat, load, speed or medium; "" if unknown."""
+    """Return the label of the last words of names: repeat, load, speed or medium; else ""."""
     if all(word.lstrip("rR").isdigit() for word in words):
         return "repeat"
     for label, unit in _AMOUNTS.items():

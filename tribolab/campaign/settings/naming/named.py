@@ -1,4 +1,4 @@
-"""Whether a campaign file still names a file, also one that is not there now."""
+"""Check whether a campaign file names a file, even if the file is missing."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def is_named(campaign: Campaign, patterns: Iterable[str], label: str) -> bool:
-    """Tell whether one of these patterns, below the raw folder, stands for a file's label."""
+    """Whether the label of a file matches one of the patterns in the raw folder."""
     raw = PurePosixPath(label_of(campaign, campaign.raw))
     path = PurePosixPath(label)
     if not path.is_relative_to(raw):

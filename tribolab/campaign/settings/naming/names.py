@@ -1,4 +1,4 @@
-"""Names in a campaign file that lead nowhere: surfaces, media, instruments, checks."""
+"""Unknown or contradictory names in a campaign file: surfaces, media, instruments, contacts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def of_names(campaign: Campaign) -> list[SettingsProblem]:
-    """Names that are used but not declared, or declared twice."""
+    """Return the problems with names and values, e.g. names that are used but not declared."""
     problems = []
     surfaces = [surface.name for surface in campaign.surface]
     for number, name in enumerate(surfaces):
@@ -79,7 +79,7 @@ def of_names(campaign: Campaign) -> list[SettingsProblem]:
 
 
 def _of_liquids(campaign: Campaign) -> list[SettingsProblem]:
-    """Liquids that are not known, or none at their temperature."""
+    """Return the problems with the media: unknown, or not liquid at the temperature."""
     problems = []
     for name, medium in campaign.medium.items():
         if medium.liquid is not None and not knows_liquid(medium.liquid):
@@ -98,7 +98,7 @@ def _of_liquids(campaign: Campaign) -> list[SettingsProblem]:
 
 
 def _of_flow_curve(campaign: Campaign, name: str, medium: Medium) -> list[SettingsProblem]:
-    """Return what is wrong with the flow curve of a medium."""
+    """Return the problem with the flow curve of a medium, if there is one."""
     where, what = ("medium", name, "flow_curve"), ""
     if medium.viscosity is not None:
         what = "there is a viscosity as well; state one of them"
@@ -113,7 +113,7 @@ def _of_flow_curve(campaign: Campaign, name: str, medium: Medium) -> list[Settin
 
 
 def _of_theory(campaign: Campaign) -> list[SettingsProblem]:
-    """Surfaces and media that [model] and [rubber] name, and a modulus that is stated twice."""
+    """Return the problems of [model] and [rubber]: unknown names, a modulus stated twice."""
     wrong = []
     surfaces = [pair.label for pair in contact_pairs(campaign)]
     for name in campaign.model.together:
@@ -150,7 +150,7 @@ def _binds(medium: Medium) -> bool:
 
 
 def _hint(word: str, known: Iterable[str], cure: str) -> str:
-    """Return the nearest that is declared, or how to declare it."""
+    """Return a hint: the most similar declared name, or how to declare the word."""
     hint = nearest(word, known)
     return hint if "did you mean" in hint else f"{hint}; {cure}"
 

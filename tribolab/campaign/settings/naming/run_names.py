@@ -1,4 +1,4 @@
-"""Names of runs and files of results: from what raw files are called, safe on any file system."""
+"""Names of runs and result files, made from the names of raw files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MAX_NAME = 100
 
 
 def unique_names(groups: Iterable[Iterable[Path]]) -> list[str]:
-    """One name per run, from what its files' names have in common; safe on any file system.
+    """Return a unique name for each run, from the common part of its file names.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def unique_names(groups: Iterable[Iterable[Path]]) -> list[str]:
 
 
 def distinct(names: Iterable[str]) -> list[str]:
-    """Add numbers to names that came before; upper and lower case are one on some disks.
+    """Add numbers to repeated names; upper and lower case count as equal, as on some disks.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def distinct(names: Iterable[str]) -> list[str]:
 
 
 def common_name(files: Sequence[Path]) -> str:
-    """Return what the names of a run's files have in common, without their endings."""
+    """Return the common beginning of the names of a run's files, without extensions."""
     stems = [file.stem for file in files]
     if len(stems) == 1:
         return stems[0]
@@ -61,7 +61,7 @@ def common_name(files: Sequence[Path]) -> str:
 
 
 def safe_name(name: str) -> str:
-    """Return a name that any file system takes.
+    """Return a name that is valid on any file system.
 
     Examples
     --------
@@ -71,6 +71,6 @@ def safe_name(name: str) -> str:
     plain = unicodedata.normalize("NFKD", name.replace("µ", "u").replace("μ", "u"))
     plain = plain.encode("ascii", "ignore").decode()
     plain = re.sub(r"[^A-Za-z0-9._-]+", "_", plain).strip("._")[:_MAX_NAME] or "run"
-    # "curve_" and "surface_" begin what other results are called; the rest are devices on Windows
+    # other results have names with "curve_" or "surface_"; the rest are devices on Windows
     clash = re.match(r"(?i)(curve_|surface_|(con|prn|aux|nul|com\d|lpt\d)(\.|$))", plain)
     return f"run_{plain}" if clash else plain
