@@ -35,14 +35,14 @@ if TYPE_CHECKING:
 
     Parts = dict[str | None, xr.Dataset]  # groups of a data file
 
-SLIP = "stick_slip"  # group of stick-slip over speed
-TRACTION = "traction"  # group of friction over the slide-roll ratio
+SLIP = "stick_slip"  # group of stick-slip against speed
+TRACTION = "traction"  # group of friction against the slide-roll ratio
 _AS_FOUND = "as_found"  # group of the curve without a person's decisions
 Condition = tuple[str, str, float | None, str]
 
 
 class _Levels(NamedTuple):
-    """Measured loads [N] of a run under several loads, and those of this curve; else empty."""
+    """Load levels [N] of a run, and which belong to the curve; empty if it has one load."""
 
     measured: tuple[float, ...]
     wanted: tuple[bool, ...]
@@ -57,9 +57,9 @@ class _Levels(NamedTuple):
 
 @dataclass(frozen=True)
 class CurveTask:
-    """Data files of the runs of one measured curve.
+    """Measured curve to be computed, with the data files of its runs.
 
-    `found_files` are those used without a person's decisions; empty if nobody decided. `levels`
+    `found_files` are those that would be used without decisions; empty if there are none. `levels`
     (and `found_levels`) state the loads of each run that belong to this curve.
     """
 
@@ -79,7 +79,7 @@ class CurveTask:
 
 
 class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
-    """Stage of the measured curves.
+    """Stage that combines the runs of each measured curve.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
 
 
 def _temperature(frictions: Sequence[xr.Dataset]) -> tuple[float | None, float]:
-    """Return mean and spread [K] of the temperature of runs that all recorded it."""
+    """Return mean and spread [K] of the temperature; None and 0 if a run did not record it."""
     known = [f.attrs["temperature_K"] for f in frictions if "temperature_K" in f.attrs]
     if not known or len(known) < len(frictions):
         return None, 0.0
@@ -252,7 +252,7 @@ def _temperature(frictions: Sequence[xr.Dataset]) -> tuple[float | None, float]:
 
 
 def _contact_area(frictions: Sequence[xr.Dataset]) -> float | None:
-    """Return the mean measured contact area [m2] of runs that all have one."""
+    """Return the mean of the measured contact areas [m2]; None if a run has none."""
     known = [f.attrs["contact_area_m2"] for f in frictions if "contact_area_m2" in f.attrs]
     return float(np.mean(known)) if known and len(known) == len(frictions) else None
 
@@ -276,7 +276,7 @@ def _budget_curve(
 
 
 def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
-    """Return the stated uncertainties of the model inputs; the largest of several runs."""
+    """Return the largest stated uncertainty of each model input among the runs."""
     from tribolab.metrology.budget import known_uncertainties  # imported late for a quick start
 
     stated = [known_uncertainties(friction) for friction in frictions]
@@ -311,7 +311,7 @@ def _segments_at_load(part: Parts, own: _Levels) -> Parts:
 
 
 def _load_from(runs: Iterable[RunOutcome]) -> str:
-    """Return the source of the load of a curve: stated, if it is stated for one run."""
+    """Return the source of the load of a curve; stated if it is stated for at least one run."""
     known = {LOAD_MEASURED if _measured_levels(run) else run.load_from for run in runs}
     return next((s for s in (LOAD_STATED, LOAD_MEASURED, LOAD_VARIES) if s in known), "")
 
@@ -321,7 +321,7 @@ def _measured_levels(run: RunOutcome) -> bool:
 
 
 def _conditions(run: RunOutcome) -> list[Condition]:
-    """Return the common conditions of the runs of a curve, for each load of a run."""
+    """Return the conditions (surface, medium, load) of a run, one for each of its loads."""
     alone = "" if run.surface or run.medium else run.name
     loads = dict.fromkeys(run.load_levels or (run.normal_force,))
     return [(run.surface, run.medium, load_label(load), alone) for load in loads]

@@ -25,7 +25,7 @@ from tribolab.regime.model import Mode
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
 
-_ROUGH_ENOUGH = 0.0  # J/m2: a surface without macroscopic adhesion slides steadily
+_ROUGH_ENOUGH = 0.0  # J/m2: work of adhesion of surfaces without macroscopic adhesion
 _CURVE = (
     "friction_coefficient",
     "friction_coefficient_model",
@@ -44,7 +44,7 @@ SPEED_COLUMNS = tuple(name + _ENDING.get(name, "") for name in _CURVE)  # column
 
 @dataclass(frozen=True)
 class ModeTask:
-    """Measured curve to judge, the data file of its model ("": none), and known properties."""
+    """Measured curve to judge, the data file of its model (or ""), and known properties."""
 
     curve: CurveOutcome
     model_file: str
@@ -60,7 +60,7 @@ class ModeTask:
 
 
 class Modes(Recorded[ModeTask, ModeRecord, Notice]):
-    """Stage of the sliding modes.
+    """Stage that judges the sliding mode of each measured curve.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ _BY_HAND = ("accepted", "rejected")
 
 
 class _Condition(NamedTuple):
-    """Names of the repeats of one condition, and their friction: relative, or steady [1]."""
+    """Names of the repeats under one condition, and their friction: relative level, or steady µ."""
 
     runs: tuple[str, ...]
     levels: np.ndarray
@@ -63,7 +63,7 @@ def _condition(store: Store, curve: CurveRecord) -> _Condition | None:
 
 
 def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
-    """Return the result of the check by name of each repeated run."""
+    """Return the result of the check of repeats for each repeated run, by name."""
     from tribolab.friction.points.odd_repeats import odd_repeats  # imported late for a quick start
 
     checks: dict[str, CheckRow] = {}

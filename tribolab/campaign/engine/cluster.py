@@ -15,7 +15,7 @@ from tribolab.arrays.threads import one_thread
 from tribolab.core.errors import ConfigError, OutputError
 
 DASK_TIMEOUT = "20s"
-LOOK = 1.0  # s between two checks of a cluster
+LOOK = 1.0  # s between two checks whether the cluster is lost
 ANSWER = 5.0  # s; a scheduler answers within some ms
 PATIENCE = 20.0  # s without any worker, or without the scheduler, after which the cluster is lost
 SILENCE = 40.0  # s without a heartbeat; up to 200 workers send one every 2 s
@@ -31,7 +31,7 @@ class ClusterAbsent(ConfigError):
 
 
 def gone(why: str, done: int, of: int) -> str:
-    """Return the error for a lost cluster, with the reason and the finished work."""
+    """Return the error message for a lost cluster, with the reason and the progress."""
     progress = f"; {done} of {of} pieces of work were done" if of else ""
     return (
         f"the Dask cluster is lost: {why}{progress}. Nothing was written; earlier results are "
@@ -42,7 +42,7 @@ def gone(why: str, done: int, of: int) -> str:
 
 @contextlib.contextmanager
 def dask_executor(scheduler: str) -> Iterator[Executor]:
-    """Yield the executor of a scheduler at an address.
+    """Yield an executor on the Dask scheduler at an address.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
 
 @contextlib.contextmanager
 def _silent(package: str) -> Iterator[None]:
-    """Suppress all but critical log messages of a package, including loggers with own levels."""
+    """Suppress all but critical messages of a package, also from loggers with their own level."""
     names = [package, *(n for n in logging.root.manager.loggerDict if n.startswith(f"{package}."))]
     levels = {name: logging.getLogger(name).level for name in names}
     try:
@@ -112,14 +112,14 @@ class Cluster(Executor):
         self._inner = client.get_executor(pure=False)
         self._missed: float | None = None
         self._looked = 0.0
-        self._heard: dict[str, tuple[float, float]] = {}  # by worker: its clock, and ours
+        self._heard: dict[str, tuple[float, float]] = {}  # last heartbeat, and when seen
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call on the cluster and return its future."""
         return self._inner.submit(_call, pickle.dumps((function, args, kwargs)))
 
     def lost(self) -> str:
-        """Return the reason why no answer can come any more; "" if one can."""
+        """Return the reason why the cluster counts as lost; "" if it works."""
         now = time.monotonic()
         if now < self._looked + LOOK:
             return ""
@@ -154,7 +154,7 @@ class Cluster(Executor):
 
     def _silent(self, workers: Mapping[str, Any], now: float) -> list[str]:
         """Return the addresses of workers without a recent heartbeat."""
-        if now > self._looked + PATIENCE:  # time in which nothing was checked does not count
+        if now > self._looked + PATIENCE:  # after a pause without checks, silence counts from now
             self._heard = {}
         seen = {address: worker["last_seen"] for address, worker in workers.items()}
         before = self._heard
@@ -167,7 +167,7 @@ class Cluster(Executor):
     def _remove(self, silent: Sequence[str]) -> None:
         """Reassign the work of silent workers to the others."""
 
-        # sent as bytes: no module is needed on that side
+        # a nested function is sent as code, so the scheduler need not have tribolab
         async def remove(dask_scheduler: Any) -> None:
             for address in silent:
                 await dask_scheduler.remove_worker(address, stimulus_id="tribolab")
@@ -180,7 +180,7 @@ class Cluster(Executor):
 
 
 def _call(packed: bytes) -> Any:
-    """Call a packed function in a thread of a worker.
+    """Unpack and call a function in a thread of a Dask worker.
 
     Dask would unpack arguments, with their imports, in the heartbeat thread. Linear algebra uses as
     many threads as in local processes, so that the last digits of sums agree.
@@ -191,6 +191,6 @@ def _call(packed: bytes) -> Any:
 
 
 def _is_out_of_memory(worker: Mapping[str, Any]) -> bool:
-    """Whether a worker refuses work for lack of memory while it has none that could end."""
+    """Whether a worker is paused for lack of memory and has no running work that could free it."""
     doing = worker["metrics"].get("task_counts", {}).get("executing", 0)
     return worker["status"] == "paused" and not doing

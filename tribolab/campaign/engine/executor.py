@@ -1,4 +1,4 @@
-"""Executors: processes that survive a crash, a Dask cluster, or this process."""
+"""Choice of the executor: local processes, a Dask cluster, or the current process."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def default_jobs() -> int:
 def completed(
     executor: Executor | None, function: Callable[[Any], Any], tasks: Iterable[Any]
 ) -> Iterator[tuple[Any, Future[Any]]]:
-    """Yield (task, finished future) as the tasks end; without executor, here and in order.
+    """Yield (task, finished future) as tasks end; without executor, run them here in order.
 
     With an executor the tasks start immediately, before results are requested. If the caller stops
     early, tasks that have not started are cancelled.
@@ -83,7 +83,7 @@ def _as_they_end(
 
 
 def _explain_death(future: Future[Any]) -> Future[Any]:
-    """Return the future of a task, with an explanation if its Dask workers died."""
+    """Return a finished future; if its Dask workers died, one with an explanation."""
     if type(future.exception()).__name__ != "KilledWorker":
         return future
     died: Future[Any] = Future()

@@ -1,4 +1,4 @@
-"""Nursery: a process with all imports done, of which worker processes are copies.
+"""Nursery: process that has imported all modules, and is forked for each worker.
 
 Importing the modules of a worker takes as long as analysing several runs. If the system can copy a
 process safely, one process without threads imports them once, in parallel with its parent.
@@ -58,7 +58,7 @@ class Nursery(ForkServer):
             return super().connect_to_new_process(fds)
         except ConnectionError:
             pid = self._forkserver_pid  # type: ignore[attr-defined]
-            if pid is not None:  # it may still be ending: then nobody would start another
+            if pid is not None:  # a nursery that is still ending would not be replaced
                 with contextlib.suppress(OSError):
                     os.kill(pid, signal.SIGKILL)
                     os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
@@ -114,7 +114,7 @@ class _CopiedPopen(popen_forkserver.Popen):
             set_spawning_popen(None)
         passed = self._fds  # type: ignore[attr-defined]
         self.sentinel, ours = self._nursery.connect_to_new_process(passed)
-        # while it is open, the worker knows that its parent lives
+        # the worker ends when this pipe closes, i.e. when its parent ends
         duplicate = os.dup(ours)
         self.finalizer = util.Finalize(
             self,

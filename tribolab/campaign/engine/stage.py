@@ -1,4 +1,4 @@
-"""Common interface of all kinds of work: plan, reuse of known results, work, failures.
+"""Interface of all stages of a campaign, and their execution.
 
 Runs, curves, surfaces, models and figures are stages. A stage defines its tasks, reuses known
 results, has a pure function for workers (from task to record), and makes a record of a failure. The
@@ -63,7 +63,7 @@ class Stage(ABC, Generic[Task, Record, Done]):
 
     @abstractmethod
     def keep(self, task: Task, place: int, record: Record) -> Done:
-        """Store a record, and return the summary for later stages."""
+        """Store a record, and return what later stages need of it."""
 
 
 def silent(stage: str, done: int, total: int) -> None:
@@ -136,7 +136,7 @@ def answers(
     tasks: Sequence[tuple[int, Task]],
     executor: Executor | None,
 ) -> Iterator[tuple[int, Task, Record | BaseException]]:
-    """Yield (index, task, record or error) as the tasks end, without keeping them."""
+    """Yield (index, task, record or error) as the tasks end; results are not kept in memory."""
     places = {id(task): place for place, task in tasks}
     return _answered(places, completed(executor, work, [task for _, task in tasks]))
 

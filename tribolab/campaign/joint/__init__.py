@@ -1,1 +1,1 @@
-"""Joint fits of a campaign: all loads of a surface in one liquid, or of several surfaces."""
+"""Joint fits in one liquid: all loads of a surface, or several surfaces together."""

@@ -36,7 +36,7 @@ class JointDry:
     normal_forces, measured
         Loads [N], and the data files of the curves.
     dry, wet
-        Works of adhesion without and with the liquid.
+        Work of adhesion without the liquid, and in it.
     """
 
     surface: str

@@ -1,4 +1,4 @@
-"""Stage of the joint fits: all loads of a surface in one liquid, or of several surfaces."""
+"""Stage of the joint fits in one liquid: all loads of a surface, or several surfaces."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
-    """Stage of the joint fits.
+    """Stage that fits all loads of a surface, or several surfaces, together.
 
     Parameters
     ----------

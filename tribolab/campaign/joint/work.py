@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _SAME_LOAD = 0.02  # largest relative difference of forces that count as one load
 _ADHESIVE = "adhesive area"
-_OTHER_AREA = {"persson": "corrected area"}  # by the theory of the fit; default: Persson's
+_OTHER_AREA = {"persson": "corrected area"}  # other theory, by that of the fit
 _CURVE = (
     "friction_coefficient_couette",
     "friction_coefficient_pressure",
@@ -156,7 +156,7 @@ def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
 
 
 class _Growth(NamedTuple):
-    """Ratio of the area with to that without adhesion (load), and standard error of its ln."""
+    """Area with adhesion divided by area without it, and standard error of the ln (load)."""
 
     value: np.ndarray
     error: np.ndarray
@@ -181,7 +181,7 @@ def _curve_name(task: JointTask, surface: str, force: float) -> str:
 
 
 def _priors(task: JointTask) -> JointPriors:
-    """Return the default priors; that of the viscosity follows its range, if stated."""
+    """Return the priors of the fit; the viscosity prior follows from the stated range, if any."""
     from tribolab.fit.joint.priors import JointPriors  # imported late for a quick start
 
     if task.viscosity_range is None:
@@ -254,7 +254,7 @@ def _computed_curve(task: JointTask, model: ModelOutcome) -> xr.Dataset:
 
 
 def _model_uncertainties(task: JointTask) -> dict[str, xr.Dataset]:
-    """Return the model uncertainty of each surface, at one load for which it is computed."""
+    """Return the model uncertainty of each surface, at the first load for which it was computed."""
     bands: dict[str, xr.Dataset] = {}
     for model in task.models:
         if "uncertainty" in model.parts and model.surface not in bands:
@@ -302,7 +302,7 @@ def _dry_load_curves(
     other: bool = False,
     enlarged: bool = False,
 ) -> list[LoadCurve]:
-    """Return the joint fit's inputs for the curves measured without the liquid."""
+    """Return the dry curves as inputs of the joint fit, with the chosen contact area."""
     # imported late for a quick start
     from tribolab.fit.joint.load_curve import LoadCurve
     from tribolab.fit.joint.response import constant_response

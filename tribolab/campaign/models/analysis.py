@@ -198,7 +198,7 @@ def _input_sensitivities(
     load: float,
     body: Arguments,
 ) -> xr.Dataset | None:
-    """Return the sensitivities of the curve to load, radius and modulus; None without errors."""
+    """Return how the curve changes with load, radius and modulus; None without stated errors."""
     if not model.input_errors or not speed.size:
         return None
     decades = np.log10(speed.max() / speed.min())
@@ -213,7 +213,7 @@ def _range_of(value: float, error: float) -> tuple[float, float] | None:
 
 
 def _add_sensitivities(curve: xr.Dataset, inputs: xr.Dataset, stress: float) -> xr.Dataset:
-    """Add the change of computed friction by each input (model_input, sliding_speed)."""
+    """Add the change of the computed friction due to each input (model_input, sliding_speed)."""
     moved = moved_friction(inputs, stress, curve["sliding_speed"].values)
     names = inputs["model_input"].values
     parts = curve.assign(model_part=(("model_input", "sliding_speed"), moved))
@@ -240,7 +240,7 @@ def _traction(
     parameters: Parameters,
     shear_stress: float,
 ) -> xr.Dataset:
-    """Return computed friction at the slide-roll ratios and entrainment speeds of the points."""
+    """Return the computed friction at the slide-roll ratio and entrainment speed of each point."""
     ratios, speeds = measured["slide_roll_ratio"].values, measured["rolling_speed"].values
     friction = np.full(ratios.size, np.nan)
     for ratio in np.unique(np.round(ratios, 3)):

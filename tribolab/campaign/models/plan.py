@@ -1,4 +1,4 @@
-"""Plan of the models: measured curves that get one, with everything needed to compute it."""
+"""Plan of the models: one for each measured curve in a liquid, with all its inputs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tribolab.records.part_records import CurveRecord, SurfaceRecord
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 
-_ELSEWHERE = {  # keys of [model] that are no settings of one model's curve
+_ELSEWHERE = {  # keys of [model] that do not affect a single model curve
     "compute",
     "uncertainty",
     "adhesion",
@@ -74,7 +74,7 @@ class PlannedModel:
     contact_area
         Measured contact area [m2]; None if unknown.
     missing
-        What the campaign does not define; "" if the model can be computed.
+        Message on missing inputs; "" if the model can be computed.
     source, source_sha256
         Source files of curve and spectrum.
     config_sha256
@@ -192,7 +192,7 @@ def plan_models(
 
 
 def _viscosity(campaign: Campaign, curve: CurveRecord) -> MediumViscosity | None:
-    """Return the viscosity at the recorded temperature, or as stated without one."""
+    """Return the viscosity at the recorded temperature; as stated if none was recorded."""
     kelvin = curve.temperature_K
     recorded = None if kelvin is None else Recorded(kelvin, curve.temperature_spread_K)
     return campaign.viscosity_of(curve.outcome.medium, curve.model_inputs, recorded)

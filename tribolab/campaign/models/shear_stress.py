@@ -47,13 +47,13 @@ def fit_model(
 
 
 def with_other_area(computed: xr.Dataset) -> xr.Dataset:
-    """Use the contact area of the other theory in a computed curve or its sensitivities."""
+    """Return a computed curve, or its sensitivities, with the contact area of the other theory."""
     names = ("friction_per_shear_stress", "solid_part")
     return computed.assign({n: computed[f"{n}_other"] for n in names if n in computed})
 
 
 def area_enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
-    """Return the area with adhesion over the model's area at the load, and the bounds."""
+    """Return the ratio of the area with adhesion to that of the model, and its bounds."""
     path = folder / model.surface_file
     adhesion = optional_data(path, "adhesion_loads")
     if adhesion is None or model.curve.medium not in adhesion.medium.values:

@@ -46,7 +46,7 @@ class ModelTask:
 
 
 class Models(Recorded[ModelTask, ModelRecord, ModelRecord]):
-    """Stage of the models.
+    """Stage that computes a model for each measured curve in a fluid.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class Analysed(NamedTuple):
     friction_as_found, quality_as_found
         The same without a person's decisions; None and "" if nobody decided.
     whole
-        Friction including the part that `discard` and `steady` leave out; None without them.
+        Friction of all segments, also of those left out by `discard` and `steady`; else None.
     """
 
     signals: xr.Dataset
@@ -117,7 +117,7 @@ def _steady_part(
     discard: str | None,
     steady: str | None,
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Return the segments that are used, and the friction of all if some are left out."""
+    """Return the segments to use, and the friction of all segments if some may be left out."""
     if discard is None and steady is None:
         return segments, None
     # imported late for a quick start
@@ -166,7 +166,7 @@ def _evaluate(
 
 
 def _add_uncertainties(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
-    """Return the signals with all stated calibration uncertainties, first the campaign's."""
+    """Return the signals with stated uncertainties; the campaign file overrides instruments."""
     stated = RunAttributes.from_attrs(signals.attrs).uncertainty | run.uncertainty
     return signals.assign_attrs(uncertainty=stated) if stated else signals
 
@@ -222,7 +222,7 @@ def _add_stated_load(signals: xr.Dataset) -> xr.Dataset:
 
 
 def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
-    """Return the attributes of a run of stated speed: used, or compared with the recorded one."""
+    """Return the attributes for a stated speed; raise if the file states another one."""
     own = signals.attrs.get("set_speed_m_s", speed)
     if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):
         raise ConfigError(

@@ -23,7 +23,7 @@ _VARIES = 1.1  # ratio of the largest to the smallest load of the segments of on
 
 
 class RunLoad(NamedTuple):
-    """Load [N] of a run, its source, the load measured while sliding, and its levels.
+    """Load of a run [N], its source, the load measured during sliding, and load levels.
 
     For several set levels the load counts as stated, and `normal_force` is None.
     """
@@ -67,7 +67,7 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
 
 
 def _is_set_point(signals: xr.Dataset) -> bool:
-    """Whether the load of a run is only a set-point of its steps, not measured."""
+    """Whether the recorded load of a run is only its set-point, not a measurement."""
     names = ("normal_force", "set_normal_force")
     if any(name not in signals or signals[name].dims != ("time",) for name in names):
         return False

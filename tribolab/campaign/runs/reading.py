@@ -1,4 +1,4 @@
-"""Reuse of the signals of a run from an earlier data file instead of its raw files.
+"""Signals of a run from an earlier data file, which avoids reading the raw files.
 
 Reading the raw files of a run and aligning its two clocks takes as long as the rest of the
 analysis. A data file contains the same signals with the results of the checks. It also records the
@@ -31,14 +31,14 @@ READING = "reading"  # attribute of a run in a data file: checksum, and changes 
 
 
 class Earlier(NamedTuple):
-    """Earlier data file, and the checksum of the wanted reading."""
+    """Earlier data file, and the checksum that its signals must have."""
 
     file: Path
     mark: str
 
 
 def mark_of(run: PlannedRun, sources: Sequence[Source]) -> str:
-    """Return the checksum of all that affects the signals of a run; "" if a file is unknown."""
+    """Return the checksum of all inputs of a run's signals; "" if a file is unreadable."""
     sums = [checksum for _, checksum, _ in sources]
     if not all(sums):
         return ""
@@ -47,7 +47,7 @@ def mark_of(run: PlannedRun, sources: Sequence[Source]) -> str:
 
 
 def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
-    """Record in the analysed signals how they were read, in place.
+    """Record in the attributes of the analysed signals how to restore the signals as read.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
 
 
 def _attribute_changes(before: Mapping[object, object], after: Mapping[object, object]) -> Json:
-    """Return the changes that restore earlier attributes."""
+    """Return the changes of attributes, from which the earlier ones can be restored."""
     was = {str(k): v for k, v in before.items() if k not in after or after[k] is not v}
     return {"was": was, "new": [str(k) for k in after if k not in before]}
 
@@ -122,7 +122,7 @@ def _earlier_attrs(after: Mapping[object, object], changed: Json) -> Json:
 
 
 def _is_plain(changed: Json) -> bool:
-    """Whether a value is unchanged by JSON."""
+    """Whether a value is unchanged after writing it as JSON and reading it back."""
     try:
         return bool(json.loads(json.dumps(changed)) == changed)
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Common load of repeats without a stated load, whose measured loads differ slightly."""
+"""Common load for repeats whose measured loads differ slightly."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MAX_LOAD_RATIO = 1.05  # ratio of the largest to the smallest load of repeats
 
 
 def share_loads(store: Store, came: Sequence[RunHandle]) -> list[RunHandle]:
-    """Assign one load to repeats with measured loads; a stated one if another run has it."""
+    """Assign a common load to runs with similar measured loads; a stated load if one is close."""
     systems: dict[tuple[str, str], list[RunOutcome]] = {}
     for run in came:
         systems.setdefault((run.outcome.surface, run.outcome.medium), []).append(run.outcome)
@@ -44,7 +44,7 @@ def _store_load(store: Store, run: RunHandle, place: int, loads: dict[_Own, floa
 
 
 def _common_loads(runs: Iterable[RunOutcome]) -> Iterable[tuple[_Own, float]]:
-    """Return runs and measured loads, each with the load assigned to it."""
+    """Yield (run name, measured load) and the load assigned to it."""
     stated = [run.normal_force for run in runs if run.load_from == LOAD_STATED]
     known = [load for load in stated if load is not None and load > 0]
     measured = [(load, run.name) for run in runs for load in _measured(run)]

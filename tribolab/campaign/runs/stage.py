@@ -77,7 +77,7 @@ class RunHandle(NamedTuple):
 
 
 class Runs(Stage[RunTask, RunAnswer, RunHandle]):
-    """Stage of the runs.
+    """Stage that reads, analyses and checks each run.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ class Runs(Stage[RunTask, RunAnswer, RunHandle]):
         return RunHandle(outcome, sources, record.zero, mark)
 
     def prepared(self, task: RunTask) -> RunTask:
-        """Add the place of the signals, if the raw files and their reading are unchanged."""
+        """Add the earlier data file with the signals, if the raw files are unchanged."""
         run = task.run
         entry = self._store.before.get(_KIND, run.name, RunRecord)
         if entry is None or not entry.record.outcome.done:
@@ -269,7 +269,7 @@ def process_run(task: RunTask) -> RunAnswer:
 
 
 def _is_ramp(facts: RunFacts, segments: int) -> bool:
-    """Whether the speed rises or falls for most of a run."""
+    """Whether the speed increases or decreases during most of a run."""
     omitted = [vars(part) for part in facts.omitted]
     found = {"segments_found": segments, "omitted": omitted, "duration_s": facts.duration_s}
     return is_ramp(found)
@@ -300,7 +300,7 @@ def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> 
 
 
 def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:
-    """Return the outcome of a run without results; its files are named as reports name them."""
+    """Return the outcome of a run without results; the reason names files by their labels."""
     for file, label in zip(run.files, run.labels, strict=True):
         reason = reason.replace(str(file), label)
     if len(run.labels) == 1:

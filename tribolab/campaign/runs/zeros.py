@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _OWN = "own_zero_N"  # attribute of a friction result: its zero, if certain
-# attribute: zeros lent by others; present but empty if it has no zero
+# attribute of a result without its own zero: zeros of other runs, may be empty
 _LENT = "zeros_of_other_runs_N"
-_MIN_ZEROS = 2  # smallest number of zeros for a known scatter
+_MIN_ZEROS = 2  # smallest number of other zeros to estimate their scatter
 _DIGITS = 6
 
 
@@ -56,7 +56,7 @@ def zero_of(attrs: Mapping[str, Any], run: Mapping[str, Any], stated: str | None
 
 
 def zeros_text(zeros: Iterable[float]) -> str:
-    """Return text of zeros, equal for equal zeros."""
+    """Return zeros as a text, rounded, for comparison."""
     return "; ".join(f"{zero:.{_DIGITS}g}" for zero in zeros)
 
 

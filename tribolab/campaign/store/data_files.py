@@ -123,7 +123,7 @@ def link(old: Path, new: Path) -> None:
 
 
 def digest(*parts: xr.Dataset | None) -> str:
-    """Return the checksum of the names and values of datasets, without creation times."""
+    """Return the checksum of the names and values of datasets, ignoring attributes."""
     checksum = hashlib.sha256()
     for data in parts:
         if data is None:

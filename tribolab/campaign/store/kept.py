@@ -1,7 +1,8 @@
 """Earlier results that are kept because their source files cannot be read now.
 
 A file that is temporarily empty, locked or missing must not discard good results. Kept results
-state since when they are kept; they are dropped if the campaign no longer names their files.
+state the date of the earlier analysis. If the campaign no longer names their files, they are
+dropped.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ def kept_text(path: Path, why: str) -> str:
 def kept_record(
     store: Store, kind: str, earlier: PartRecord, why: str, data_file: str = ""
 ) -> PartRecord | None:
-    """Return an earlier record with a finding that it is kept, and why.
+    """Return an earlier record with a finding on why it is kept.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ def lowest_wavenumber(surface: PlannedSurface) -> float | None:
 
 
 def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, list[Finding]]:
-    """Compute contact, adhesion and rubber friction where defined, with findings.
+    """Compute contact, adhesion and rubber friction, as far as their inputs are known.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
 
 
 def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return the spectrum, and those for the lower and upper bound of a contact area."""
+    """Return the spectrum, and the spectra for the lower and upper bound of the contact area."""
     ends = {"": "", "_low": "_high", "_high": "_low"}  # more roughness, less contact
     return {
         ending: psd[["psd_2d"]].assign(psd_2d=psd[f"psd_2d{other}"])
@@ -199,7 +199,7 @@ def _adhesion(
     psd: xr.Dataset,
     modulus: float,
 ) -> tuple[xr.Dataset, xr.Dataset]:
-    """Solve adhesion in each medium at the pressures of the grid, of the loads, and near zero."""
+    """Solve adhesion in each medium: at zero pressure, at the loads, and on the pressure grid."""
     at_loads = np.array([]) if loads is None else loads.pressure.values
     pressures = np.concatenate([[0.0], at_loads, grid])
     # a band is smooth, so a third of the grid is enough
@@ -209,7 +209,7 @@ def _adhesion(
     works |= {"_low": [max(medium.low, 0.0) for medium in surface.media]}
     works |= {"_high": [max(medium.high, 0.0) for medium in surface.media]}
     middle = adhesion_by_works(pressures, psd, modulus, works[""], surface.area)
-    # the bounds of a ratio need not be at those of the areas: each end's works with both spectra
+    # a ratio may be extreme where the areas are not: combine each work with both spectra
     both = [*works["_low"], *works["_high"]]
     ends = {
         ending: adhesion_by_works(bounding, spectra[ending], modulus, both, surface.area)
@@ -274,7 +274,7 @@ def _adhesion(
 
 
 def _undecided_pull_off(points: xr.Dataset) -> list[Finding]:
-    """Return a finding if the bounds disagree on a pull-off force."""
+    """Return a finding for each medium in which the bounds disagree on a pull-off force."""
     low, high = (
         points[f"macroscopic_work_of_adhesion{ending}"].values > 0 for ending in _ENDINGS[1:]
     )

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def kept_surface(
     campaign: Campaign, planned: PlannedSurface, store: Store, record: SurfaceRecord
 ) -> SurfaceRecord:
-    """Return the earlier record of a surface some of whose files cannot be read.
+    """Return the earlier record of a surface if its scans or modulus file cannot be read now.
 
     These files are its scans and its modulus. The outcome states that it is kept. Without such
     files, or without earlier results, the record is returned unchanged.

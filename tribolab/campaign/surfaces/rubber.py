@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.core.untyped import Arguments
 
-_STIFFEST_RUBBER = 20e6  # Pa; the stand-in modulus of a rubber does not apply beyond
-_SAME_RUBBER = 2.0  # ratio of a slowly measured modulus to that of the contact
+_STIFFEST_RUBBER = 20e6  # Pa; stiffer bodies are not rubber, so the stand-in modulus does not apply
+_SAME_RUBBER = 2.0  # largest ratio of low-frequency modulus to youngs_modulus for one rubber
 _PER_DECADE = 10
-_BEYOND = 1e2  # decades that a series is drawn beyond its slowest and fastest relaxation
+_BEYOND = 1e2  # factor by which the shown frequencies exceed the relaxation rates
 _ICE = 273.15  # K at 0 °C
 
 
@@ -147,7 +147,7 @@ def _shift_modulus(rubber: _Rubber, stated: Arguments) -> _Rubber:
 
 
 def _modulus_mismatch(stiffness: float, slow: float, frequency: float, label: str) -> list[Finding]:
-    """Return text if a measured modulus does not match that of the contact."""
+    """Return a finding if a measured modulus does not match youngs_modulus of the contact."""
     if 1 / _SAME_RUBBER <= slow / stiffness <= _SAME_RUBBER:
         return []
     text = (

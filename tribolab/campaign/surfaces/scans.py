@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from tribolab.qc.findings import FindingRow, Findings
 
 _FAILED = ("fail", "error")
-# extrapolated share of the mean square slope above which it is noted, or suspect
+# extrapolated fractions of the mean square slope that give a note, or a suspect finding
 _NOTED, _SUSPECT = 0.5, 0.8
-# ratio of Pq with and without a circle: in this range the circle may be waviness
+# a circle may be waviness if its removal reduces Pq by a factor between these
 _CIRCLE_COUNTS, _CIRCLE_CLEAR = 1.02, 2.0
 
 
@@ -46,7 +46,7 @@ class CheckedScans(NamedTuple):
     Parameters
     ----------
     scans
-        Without dropouts, stacked.
+        Usable scans, stacked, with dropouts filled.
     raw
         The same with their dropouts and quality flags.
     findings
@@ -123,7 +123,7 @@ def _as_row(scan: str, row: FindingRow) -> Row:
 def _read(
     surface: PlannedSurface,
 ) -> tuple[dict[Path, xr.Dataset], list[Finding], dict[Path, str]]:
-    """Read each scan separately; return a finding for each unreadable one, and the names."""
+    """Return the readable scans, a finding for each unreadable file, and the scan labels."""
     scans: dict[Path, xr.Dataset] = {}
     findings: list[Finding] = []
     called: dict[Path, str] = {}
@@ -151,7 +151,7 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
 
 
 def _about(label: str, message: str) -> str:
-    """Return a message about a scan that begins with its label, not also with its file name."""
+    """Return a message that begins with the label of the scan instead of its file name."""
     name = label.rpartition("/")[2]
     end = message.removeprefix(name)
     return f"scan {label}{end}" if end != message else f"scan {label}: {message}"
@@ -187,7 +187,7 @@ def _without_folder(message: str, path: Path) -> str:
 def spectra_of_scans(
     surface: PlannedSurface, scans: xr.Dataset, q_low: float | None
 ) -> tuple[dict[str, xr.Dataset], list[Finding]]:
-    """Remove form, compute and extrapolate the spectra, and compute roughness.
+    """Remove the form from scans; compute roughness and the extrapolated spectrum.
 
     Parameters
     ----------
@@ -320,7 +320,7 @@ def _extrapolate(
 
 
 def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
-    """Return text if the circle removed may be waviness; "" if it is clear or small."""
+    """Return a doubt if the removed circle may be waviness; "" if it is clearly form or small."""
     with_it, without = (
         float(primary_roughness(each).mean()) for each in (remove_form(scans, "tilt"), flat)
     )

@@ -50,7 +50,7 @@ class SurfaceTask:
 
 
 class Surfaces(Recorded[SurfaceTask, SurfaceRecord, SurfaceRecord]):
-    """Stage of the surfaces.
+    """Stage that computes spectrum, roughness and contact of each surface.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class Surfaces(Recorded[SurfaceTask, SurfaceRecord, SurfaceRecord]):
         return SurfaceRecord(failed_surface(task.surface, *explain(error)))
 
     def keep(self, task: SurfaceTask, place: int, record: SurfaceRecord) -> SurfaceRecord:
-        """Store the record of a surface; earlier results stay if scans cannot be read."""
+        """Store the record of a surface, or the earlier one if its scans cannot be read now."""
         record = kept_surface(self._campaign, task.surface, self._store, record)
         super().keep(task, place, record)
         files = [path for path, _ in _files(task.surface)]
