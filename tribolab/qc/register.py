@@ -114,13 +114,13 @@ def resolve_limits(
             if key not in checks[name].limits:
                 known = checks[name].limits
                 raise ConfigError(
-                    f"[qc.{name}]: no limit is called '{shown(key)}'{nearest(key, known)}"
+                    f"[qc.limits.{name}]: no limit is called '{shown(key)}'{nearest(key, known)}"
                 )
             unit = checks[name].limits[key].unit
-            resolved[name][key] = limit = to_si(value, unit, name=f"[qc.{name}] {key}")
+            resolved[name][key] = limit = to_si(value, unit, name=f"[qc.limits.{name}] {key}")
             if not limit >= 0:
                 raise ConfigError(
-                    f"[qc.{name}] {key}: {value} is no limit: it must not be negative"
+                    f"[qc.limits.{name}] {key}: {value} is no limit: it must not be negative"
                 )
     return resolved
 
