@@ -86,7 +86,7 @@ def test_another_code_of_the_report_makes_the_page_anew_and_nothing_else(
     first = run(campaign)
     before = fingerprint(first.folder)
     package = tmp_path / "tribolab"
-    for room in ("report", "plot", "figures", "records"):
+    for room in ("report", "figures", "records"):
         shutil.copytree(code._PACKAGE / room, package / room)
     monkeypatch.setattr(code, "_PACKAGE", package)
     made = code.code_of_page.__wrapped__(), code.code_of_figures.__wrapped__()

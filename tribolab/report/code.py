@@ -9,7 +9,7 @@ from tribolab.core.provenance import sha256_of, sha256_of_file
 from tribolab.version import __version__
 
 _PACKAGE = Path(__file__).resolve().parents[1]
-_ROOMS = ("report", "plot", "figures", "records")
+_ROOMS = ("report", "figures", "records")
 _PYTHON = (".py",)
 _WHOLE = (*_PYTHON, ".j2", ".js", ".css", ".LICENSE")
 
