@@ -29,7 +29,7 @@ from threadpoolctl import threadpool_limits
 from tribolab.contact.separation import separation_table
 from tribolab.lubrication.domain import film_estimate, lubrication_problem
 from tribolab.lubrication.factors import _tabulated, flow_factors
-from tribolab.lubrication.mixed import (
+from tribolab.lubrication.line_solver import (
     NotConvergedError,
     State,
     _rupture,

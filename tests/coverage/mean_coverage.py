@@ -26,7 +26,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 import tribolab as tl
-from tribolab.friction.statistics import Estimate, estimate_of, estimates_of
+from tribolab.friction.mean_error.estimates import Estimate, estimate_of, estimates_of
 
 N = 1920
 T = (np.arange(N) + 0.5) / N

@@ -17,7 +17,7 @@ import sys
 import numpy as np
 from scipy.signal import lfilter
 
-from tribolab.friction.statistics import estimates_of
+from tribolab.friction.mean_error.estimates import estimates_of
 
 SAMPLES, INTERVAL, MU, NOISE = 600, 0.05, 0.2, 0.01
 TURNS = (0.5, 0.8, 1.2, 1.7, 2.4, 3.3, 5.5, 10.7, 16.0, 24.0, 36.3, 48.0, 96.0, 120.5)

@@ -8,9 +8,9 @@ from scipy import stats
 from scipy.signal import lfilter
 
 from tribolab.friction.mean_error.course import line_through
+from tribolab.friction.mean_error.estimates import MOST_STRETCHES, error_of_series, estimate_of
 from tribolab.friction.mean_error.freedom import with_freedom
 from tribolab.friction.mean_error.level import levels_of
-from tribolab.friction.statistics import MOST_STRETCHES, error_of_series, estimate_of
 from tribolab.friction.time_weights import on_grid, sample_weights
 
 RECORDS, N = 240, 1920

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.friction.statistics import estimate_of
+from tribolab.friction.mean_error.estimates import estimate_of
 from tribolab.friction.time_weights import on_grid, sample_weights
 from tribolab.qc.run.timing import rate_change
 

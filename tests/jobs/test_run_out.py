@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
+from tribolab.friction.mean_error.estimates import estimates_of
 from tribolab.friction.run_out import hidden_by_part, in_step, turned
-from tribolab.friction.statistics import estimates_of
 
 SAMPLES, MU = 600, 0.2
 PLACE = np.arange(SAMPLES) / SAMPLES

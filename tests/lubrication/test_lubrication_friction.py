@@ -7,8 +7,8 @@ from tribolab.lubrication.factor_table import FactorTable
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.flow import flow_between
 from tribolab.lubrication.friction import fluid_friction
+from tribolab.lubrication.line_solver import Fields, Problem, Solution, State
 from tribolab.lubrication.mesh import Mesh
-from tribolab.lubrication.mixed import Fields, Problem, Solution, State
 from tribolab.lubrication.parabolas import between_middles
 
 HEIGHT, WAVES, LENGTH = 0.6, 400, 1.0

@@ -19,7 +19,7 @@ from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import lubrication_problem
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.film import film_profile
-from tribolab.lubrication.mixed import _film, _jacobian, _rupture, couette_number
+from tribolab.lubrication.line_solver import _film, _jacobian, _rupture, couette_number
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.lubrication.sweep import dry_state
 

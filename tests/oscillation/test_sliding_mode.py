@@ -8,8 +8,8 @@ from tribolab.core.errors import AnalysisError
 from tribolab.friction.oscillation.slip_curve import frequency_scaling, one_curve, stick_slip_curve
 from tribolab.friction.oscillation.slip_segments import stick_slip
 from tribolab.friction.segments.find import find_segments
+from tribolab.regime.lubrication_regimes import end_of_boundary, measured_regimes, model_regimes
 from tribolab.regime.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN, Mode
-from tribolab.regime.regimes import end_of_boundary, measured_regimes, model_regimes
 from tribolab.regime.verdict import sliding_mode
 from tribolab.rig import simulate_trace
 

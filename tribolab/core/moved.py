@@ -20,6 +20,7 @@ MOVED = {
     "tribolab.deposit.pack": "tribolab.archive.packing",
     "tribolab.deposit": "tribolab.archive",
     "tribolab.errors": "tribolab.core.errors",
+    "tribolab.friction.statistics": "tribolab.friction.mean_error.estimates",
     "tribolab.mode": "tribolab.regime",
     "tribolab.several": "tribolab.arrays.broadcasting",
     "tribolab.stamping": "tribolab.units.stamping",

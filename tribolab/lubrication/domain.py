@@ -12,8 +12,8 @@ from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.separation import Separation
 from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.line_solver import Problem, Solution
 from tribolab.lubrication.mesh import graded_mesh
-from tribolab.lubrication.mixed import Problem, Solution
 from tribolab.lubrication.parameters import Liquid
 
 _INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in units of the reach (see `layout`)

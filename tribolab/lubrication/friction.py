@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.lubrication.domain import outside_drag
-from tribolab.lubrication.mixed import Problem, Solution
+from tribolab.lubrication.line_solver import Problem, Solution
 from tribolab.lubrication.speeds import System
 
 

@@ -16,7 +16,13 @@ from tribolab.contact.separation import Separation
 from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import lubrication_problem, thinned_film
 from tribolab.lubrication.factors import FlowFactors
-from tribolab.lubrication.mixed import NotConvergedError, Problem, Solution, State, solve_speed
+from tribolab.lubrication.line_solver import (
+    NotConvergedError,
+    Problem,
+    Solution,
+    State,
+    solve_speed,
+)
 from tribolab.lubrication.parameters import Liquid, Solver
 from tribolab.lubrication.sweep import (
     carried_state,

@@ -13,8 +13,7 @@ from tribolab.contact.line import solve_line
 from tribolab.contact.separation import Separation
 from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import thinned_film
-from tribolab.lubrication.mesh import Mesh
-from tribolab.lubrication.mixed import (
+from tribolab.lubrication.line_solver import (
     NotConvergedError,
     Problem,
     Solution,
@@ -22,6 +21,7 @@ from tribolab.lubrication.mixed import (
     couette_number,
     solve_speed,
 )
+from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.parameters import Liquid
 
 _SUBSTEPS = 100  # largest number of failed steps

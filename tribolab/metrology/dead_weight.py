@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.core.coverage import NORMAL
 from tribolab.core.errors import AnalysisError
-from tribolab.friction.statistics import estimate_of
+from tribolab.friction.mean_error.estimates import estimate_of
 from tribolab.units.conversion import positive
 
 _TRIM = 0.1  # share cut off at both ends of each interval with or without the weight

@@ -12,6 +12,7 @@ from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, one_curve
 from tribolab.friction.oscillation.waveform import NOT_CLEAR
 from tribolab.friction.oscillation.waveform import oscillating as oscillates
 from tribolab.regime import evidence
+from tribolab.regime.lubrication_regimes import end_of_boundary, measured_regimes, model_regimes
 from tribolab.regime.misfit import misfit_numbers
 from tribolab.regime.model import (
     LOCAL,
@@ -22,7 +23,6 @@ from tribolab.regime.model import (
     Evidence,
     Mode,
 )
-from tribolab.regime.regimes import end_of_boundary, measured_regimes, model_regimes
 from tribolab.regime.words import paragraph, suggestions, verdict_text
 from tribolab.units.stamping import stamp
 

@@ -28,8 +28,8 @@ from tribolab.friction.coefficient.segment_table import (
 )
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import compute_both
+from tribolab.friction.mean_error.estimates import estimates_of
 from tribolab.friction.segments.stretches import name_of
-from tribolab.friction.statistics import estimates_of
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.units.stamping import stamp
 

@@ -9,10 +9,10 @@ from tribolab.arrays.broadcasting import of_runs
 from tribolab.arrays.medians import median_of_known
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.coefficient import limits
+from tribolab.friction.mean_error.estimates import estimate_of
 from tribolab.friction.segments.limits import MIN_LOAD_OF_CONTACT
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import Strokes, find_strokes
-from tribolab.friction.statistics import estimate_of
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 

@@ -21,8 +21,8 @@ from tribolab.friction.coefficient.segment_table import (
     remark_on,
     segment_table,
 )
+from tribolab.friction.mean_error.estimates import Estimate, estimates_of
 from tribolab.friction.segments.limits import MAX_LOST_CONTACT
-from tribolab.friction.statistics import Estimate, estimates_of
 from tribolab.friction.zero import limits
 from tribolab.friction.zero.load_reading import WIDTH_OVER_SIGMA, load_reading
 from tribolab.friction.zero.of_run import Settings, zero_of_run

@@ -9,9 +9,9 @@ import xarray as xr
 
 from tribolab.core.coverage import NORMAL
 from tribolab.core.untyped import Json
+from tribolab.friction.mean_error.estimates import Estimate, undetermined_remark, wander_remark
 from tribolab.friction.mean_error.freedom import with_freedom
 from tribolab.friction.run_out import turn_remark
-from tribolab.friction.statistics import Estimate, undetermined_remark, wander_remark
 from tribolab.friction.zero.parts import ZeroReference
 
 

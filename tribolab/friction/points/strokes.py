@@ -10,11 +10,11 @@ import xarray as xr
 
 from tribolab.core.attributes import SegmentAttributes
 from tribolab.core.coverage import NORMAL
+from tribolab.friction.mean_error.estimates import error_of_series
 from tribolab.friction.mean_error.freedom import coverage_of
 from tribolab.friction.points import limits
 from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_scatter
 from tribolab.friction.points.speed_groups import speed_groups, sweeps_of
-from tribolab.friction.statistics import error_of_series
 from tribolab.friction.zero.of_run import PAIRED
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.arrays.medians import median
 from tribolab.core.coverage import NORMAL
-from tribolab.friction.statistics import estimates_of
+from tribolab.friction.mean_error.estimates import estimates_of
 from tribolab.friction.zero import limits
 
 _REST_BINS = 100  # bins of an interval that may be unloaded in part

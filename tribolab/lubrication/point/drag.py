@@ -7,7 +7,7 @@ from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
 from tribolab.lubrication.friction import FluidFriction
-from tribolab.lubrication.point.equations import PointProblem, PointSolution
+from tribolab.lubrication.point.ball_solver import PointProblem, PointSolution
 
 
 def point_friction(

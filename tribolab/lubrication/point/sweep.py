@@ -12,9 +12,9 @@ from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.point import solve_rings
 from tribolab.contact.polar import polar_mesh
 from tribolab.core.errors import AnalysisError
-from tribolab.lubrication.mixed import NotConvergedError
+from tribolab.lubrication.line_solver import NotConvergedError
 from tribolab.lubrication.parameters import Liquid
-from tribolab.lubrication.point.equations import (
+from tribolab.lubrication.point.ball_solver import (
     PointProblem,
     PointSolution,
     PointState,

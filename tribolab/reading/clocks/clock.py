@@ -22,9 +22,9 @@ from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
 from tribolab.core.errors import ReadError
 from tribolab.reading.clocks.faults import Faults, find_faults, first_fault, rows_at_fault
-from tribolab.reading.content.model import Content, Piece
-from tribolab.reading.content.steps import stated_interval, stated_pace
 from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.si_tables.model import Content, Piece
+from tribolab.reading.si_tables.steps import stated_interval, stated_pace
 from tribolab.reading.text.dates import date_of, has_day, has_zone
 from tribolab.units.conversion import to_si
 

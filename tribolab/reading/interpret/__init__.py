@@ -1,1 +1,4 @@
-"""Interpretation of columns and settings: evidence, rules of physics, decision."""
+"""Words, stated amounts and physical relations that tell what a column measures.
+
+The decision itself is in `tribolab.reading.unknown.columns`.
+"""

@@ -13,10 +13,6 @@ from tribolab.core.errors import ReadError, shown
 from tribolab.core.provenance import CONVENTIONS, as_text, history_line
 from tribolab.core.untyped import Json
 from tribolab.reading.clocks.clock import join_clocks, mended_time, recorded_at, set_time
-from tribolab.reading.content.model import Content
-from tribolab.reading.content.read_file import read_content
-from tribolab.reading.content.steps import oldest_first
-from tribolab.reading.content.values import add_assumed, single_values, step_values, tell_assumed
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 from tribolab.reading.dialect.containers import PythonReader
 from tribolab.reading.dialect.find import Dialect
@@ -29,6 +25,10 @@ from tribolab.reading.runs.force_ratio import keep_forces_that_agree
 from tribolab.reading.runs.row_counts import row_attributes
 from tribolab.reading.runs.speed import add_speed, keep_settings
 from tribolab.reading.runs.two_rates import sampled_together
+from tribolab.reading.si_tables.model import Content
+from tribolab.reading.si_tables.read_file import read_content
+from tribolab.reading.si_tables.steps import oldest_first
+from tribolab.reading.si_tables.values import add_assumed, single_values, step_values, tell_assumed
 from tribolab.reading.signals import Signals
 from tribolab.reading.text.first_bytes import peek
 from tribolab.units.quantities import QUANTITIES

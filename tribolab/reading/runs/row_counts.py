@@ -13,7 +13,7 @@ from typing import Any
 
 from tribolab.core.untyped import Json
 from tribolab.reading.clocks.clock import Mended
-from tribolab.reading.content.model import Content
+from tribolab.reading.si_tables.model import Content
 from tribolab.reading.signals import Signals
 
 ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why")

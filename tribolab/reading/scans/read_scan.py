@@ -14,7 +14,6 @@ from tribolab.core.provenance import as_text, made, sha256_of_file
 from tribolab.core.untyped import Json
 from tribolab.core.wording import Count
 from tribolab.reading import cures
-from tribolab.reading.content.read_file import read_content
 from tribolab.reading.dialect.containers import PythonReader, with_columns
 from tribolab.reading.dialect.find import (
     Dialect,
@@ -30,6 +29,7 @@ from tribolab.reading.scans.extent import measured_part, refuse_impossible
 from tribolab.reading.scans.formats.undescribed import read_undescribed
 from tribolab.reading.scans.grid import even, gridded, rounder_pitch
 from tribolab.reading.scans.sentinels import take_isolated
+from tribolab.reading.si_tables.read_file import read_content
 from tribolab.reading.text.first_bytes import File, peek, results_error
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
@@ -201,8 +201,8 @@ def _read_by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], st
 
 def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
     # imported late for a quick start
-    from tribolab.reading.content.values import single_values
     from tribolab.reading.scans.traces import traces_of
+    from tribolab.reading.si_tables.values import single_values
 
     content = read_content(path, dialect)
     pieces = traces_of(path, content.pieces)

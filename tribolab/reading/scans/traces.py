@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from tribolab.core.errors import ReadError, shown
-from tribolab.reading.content.model import Piece
 from tribolab.reading.scans.unit_words import WORD
+from tribolab.reading.si_tables.model import Piece
 
 _MAX_TITLES = 5  # most titles named in a message
 _NUMBERS = re.compile(r"\d+(?:[.,]\d+)*")

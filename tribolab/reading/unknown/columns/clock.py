@@ -10,8 +10,8 @@ import numpy as np
 
 from tribolab.arrays.medians import median
 from tribolab.reading.clocks.faults import find_faults, rows_at_fault
-from tribolab.reading.content.steps import is_newest_first
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, plain_words
+from tribolab.reading.si_tables.steps import is_newest_first
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, turns_of
 from tribolab.reading.unknown.columns.unit_and_sign import IN_SECONDS

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.core.errors import ReadError, shown
-from tribolab.reading.content.containers import seconds_of
 from tribolab.reading.dialect.containers import name_and_unit
 from tribolab.reading.lexicon.lexicon import known_words
 from tribolab.reading.numbers import decimal
@@ -23,6 +22,7 @@ from tribolab.reading.raw.clocks import INTERVAL_PATTERN, OneClock, on_one_clock
 from tribolab.reading.raw.containers.read import CONTAINERS, read_container
 from tribolab.reading.raw.containers.workbook import read_sheet, sheets_of
 from tribolab.reading.raw.model import RawColumn, RawFile, Setting, text_of
+from tribolab.reading.si_tables.containers import seconds_of
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.text.first_bytes import File
 from tribolab.reading.unknown.layout.header import Block, Heading, names_any

@@ -8,8 +8,6 @@ import numpy as np
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.core.provenance import sha256_of_file
-from tribolab.reading.content.model import Content, Piece
-from tribolab.reading.content.steps import started
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 from tribolab.reading.dialect.columns import AGAIN, ReadColumn, resolve, scales_of, symbols
 from tribolab.reading.dialect.containers import name_and_unit, open_as, table_of
@@ -17,6 +15,8 @@ from tribolab.reading.dialect.file_layout import Marks
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.raw.clocks import OneClock, on_one_clock
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, text_of
+from tribolab.reading.si_tables.model import Content, Piece
+from tribolab.reading.si_tables.steps import started
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name
 from tribolab.units.conversion import conversion

@@ -11,13 +11,13 @@ import numpy as np
 from tribolab.arrays.chunks import anywhere
 from tribolab.core.errors import ReadError, shown
 from tribolab.core.provenance import sha256_of_file
-from tribolab.reading.content.model import Content, Piece
-from tribolab.reading.content.steps import last_match, started
 from tribolab.reading.dialect.columns import AGAIN, first_filled, resolve, scales_of, symbols
 from tribolab.reading.dialect.containers import PythonReader
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.text_form import as_written
 from tribolab.reading.raw.missing_marks import beyond_range, measurable, take_marks
+from tribolab.reading.si_tables.model import Content, Piece
+from tribolab.reading.si_tables.steps import last_match, started
 from tribolab.reading.text.first_bytes import File, fits_format, peek
 
 _T = TypeVar("_T")
@@ -50,7 +50,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
     """
     if isinstance(dialect, PythonReader):
         # imported late for a quick start
-        from tribolab.reading.content.containers import read_columns
+        from tribolab.reading.si_tables.containers import read_columns
 
         return _clean(read_columns(path, dialect), dialect)
     file = peek(path, binary=dialect.format == "binary")
@@ -62,7 +62,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
     dialect = as_written(file, dialect)
     if dialect.format != "text":
         # imported late for a quick start
-        from tribolab.reading.content.containers import read_columns
+        from tribolab.reading.si_tables.containers import read_columns
 
         content = read_columns(file.path, dialect)
     else:

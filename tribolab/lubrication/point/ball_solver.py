@@ -11,7 +11,7 @@ from scipy.linalg import lapack
 
 from tribolab.contact.polar import PolarMesh
 from tribolab.lubrication.factors import FlowFactors
-from tribolab.lubrication.mixed import NotConvergedError, Repulsion
+from tribolab.lubrication.line_solver import NotConvergedError, Repulsion
 from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
 _STEPS = 25  # largest number of Newton steps

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from tribolab.core.errors import ReadError, shown
-from tribolab.reading.content.model import Content, Piece
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.time_rule import sampling_interval
+from tribolab.reading.si_tables.model import Content, Piece
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.units.conversion import positive
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.core.untyped import Json
-from tribolab.reading.content.model import Content
-from tribolab.reading.content.steps import last_match
 from tribolab.reading.dialect.column_rule import Value
 from tribolab.reading.dialect.formula import names_in, parse_formula
 from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.si_tables.model import Content
+from tribolab.reading.si_tables.steps import last_match
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.units.conversion import conversion, to_si
 
