@@ -52,7 +52,7 @@ class CalibrationTerms:
 def calibration_terms(
     condition: MatchedRuns, first: Folder | None, second: Folder | None
 ) -> CalibrationTerms:
-    """Return the calibration errors of the differences that the runs' scatter does not include.
+    """Return the calibration errors of differences, except those in the scatter of the runs.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ def _row(
 
 
 def _mean_friction(condition: MatchedRuns, same: bool, terms: np.ndarray) -> list[object]:
-    """Return the mean friction over the speeds common to all runs, else over those of each run."""
+    """Return the mean friction at the speeds common to all runs; without any, at each run's own."""
     means = [np.nanmean(values, axis=1)[:, None] for values in (condition.first, condition.second)]
     everywhere = terms.mean(axis=1, keepdims=True)
     compared = differences_of_groups([(means[0], means[1])], not_in_scatter=[everywhere])

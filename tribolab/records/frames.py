@@ -132,7 +132,7 @@ def curve_table(curve: xr.Dataset) -> pd.DataFrame:
 
 
 def traction_table(traction: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return friction over the slide-roll ratio as columns, a row per point."""
+    """Return friction against the slide-roll ratio as columns, one row per point."""
     return _drop("point", columns_of(traction, "point", ["rolling_speed", "slide_roll_ratio"]))
 
 
@@ -149,7 +149,7 @@ _START = [
 
 
 def static_friction_columns(starts: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return columns of a run's static friction, a row per start, with its segment from 1."""
+    """Return columns of a run's static friction, one row per start; segments count from 1."""
     columns = _drop("start_of_sliding", columns_of(starts, "start_of_sliding", _START))
     return {"segment": starts["start_of_sliding"].values + 1} | columns
 

@@ -50,7 +50,7 @@ def is_bad(run: Mapping[str, Any]) -> bool:
 
 
 def is_odd(run: Mapping[str, Any]) -> bool:
-    """Return whether a run contradicts its repeats, and nobody decided on it."""
+    """Return whether a run contradicts its repeats and no person has decided on it."""
     return contradicts_repeats(run["checks"])
 
 
@@ -110,7 +110,7 @@ def why(run: Mapping[str, Any]) -> str:
     grave = [row for row in run["checks"] if row["status"] in _GRAVE and not row.get("decision")]
     if not grave:
         return ""
-    # a clipped signal triggers other checks; a run unlike its repeats may have any fault
+    # saturation first, as it triggers other checks; then repeats, as the run may have any fault
     order = [_CAUSE, *(row["check"] for row in grave if row["check"] == "repeats")]
     order += [row["check"] for row in grave]
     first = min(grave, key=lambda row: (_GRAVE.index(row["status"]), order.index(row["check"])))

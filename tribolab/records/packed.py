@@ -14,7 +14,8 @@ from tribolab.core.untyped import Json
 _TOP = 65534  # resolution of a value as a share of its range; 65535 is NaN
 _WITHIN = 0.25  # accuracy of a time as a share of the distance to the next sample
 _MAX_KNOTS = 1000
-_FINER, _MOST_TICKS = 16, 2**32 - 1  # ticks in the shortest steps of an irregular clock
+_FINER = 16  # ticks in the shortest step of an irregular clock
+_MOST_TICKS = 2**32 - 1  # ticks in a record: their number must fit into 32 bits
 
 
 def deflated(raw: bytes) -> str:
@@ -48,7 +49,7 @@ class Clock:
     at_s: list[float]
 
     def places(self, chosen: np.ndarray) -> np.ndarray:
-        """Return the positions of samples given by their numbers."""
+        """Return the positions on this clock of the samples with the given indices."""
         return chosen if self.ticks is None else self.ticks[chosen]
 
 

@@ -12,7 +12,7 @@ from tribolab.records.parts import CurveOutcome, ModelOutcome, Row, Source, Surf
 
 @dataclass(frozen=True)
 class Origin:
-    """Files that a product was made from, and their checksums, as in its attributes."""
+    """Source files of a result with their checksums, as stored in its attributes."""
 
     source: str = ""
     source_sha256: str = ""

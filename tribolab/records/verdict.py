@@ -20,8 +20,8 @@ MEANINGS = {
     FAIL: "nothing usable",
 }
 _BAD = ("fail", "error", "rejected")
-_MAX_NAMED = 2  # uncertain conditions
-_UNCERTAIN = 0.25  # U95 of a mean over the mean, above which only one digit is certain
+_MAX_NAMED = 2  # uncertain conditions that are named
+_UNCERTAIN = 0.25  # relative U95 of a mean, above which only one digit is certain
 
 
 class Verdict(NamedTuple):
@@ -61,7 +61,7 @@ def has_unknown_zero(checks: Iterable[Mapping[str, Any]]) -> bool:
 
 
 def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
-    """Return U95 over the mean of repeats, the median over speed, if it is large; else None.
+    """Return the relative U95 of a mean of repeats (median of all speeds); None if small.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def uncertain_mean(points: Iterable[Mapping[str, Any]]) -> float | None:
 
 
 def furthest_repeat(levels: Mapping[str, float | None], odd: Collection[str] = ()) -> str:
-    """Return which of several repeats differs most from their median; "" for two or an odd one.
+    """Return which repeat differs most from the median; "" if it is odd or there are only two.
 
     Examples
     --------

@@ -68,7 +68,7 @@ class Catalogue:
         return Catalogue(_open_catalogue(folder))
 
     def get(self, kind: str, name: str, record: type[Kept]) -> Entry[Kept] | None:
-        """Return a part; None if it is unknown."""
+        """Return the entry of one run, curve, surface, model or figure; None if it is unknown."""
         rows = self._rows(f"{_SELECT} WHERE kind=? AND name=?", (kind, name))
         return next(_entries(rows, record), None)
 

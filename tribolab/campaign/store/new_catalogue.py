@@ -162,12 +162,12 @@ class Store(Catalogue):
             return None
         known = self.before.state(kind, name)
         if self._intact is not None and known is not None:
-            same = (
-                state.st_size == known[0]
-            )  # its checksum is known to agree; copies have new times
+            same = state.st_size == known[0]  # the marker has verified it; a copy has a new time
         else:
             same = (state.st_size, state.st_mtime_ns) == known
-        same &= state.st_mtime_ns <= time.time_ns()  # a later one could pass for a new file
+        same &= (
+            state.st_mtime_ns <= time.time_ns()
+        )  # not from the future: a later write could leave the same time
         return self.previous / file if same else None
 
     def link_file(self, old: str, new: str = "") -> bool:

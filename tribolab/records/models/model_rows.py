@@ -108,7 +108,7 @@ def model_rows(
 
 
 def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float) -> float | None:
-    """Return the ratio of the real contact areas, dry over in the medium; None if unknown."""
+    """Return the dry real contact area divided by that in the medium; None if unknown."""
     if adhesion is None:
         return None
     dry = [name for name in adhesion.medium.values.tolist() if is_dry(name)]

@@ -150,7 +150,9 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     )
     about = SegmentAttributes.from_attrs(friction.attrs)
     levels = value[finite]
-    if np.isfinite(about.stroke_middle):  # one of hundreds of strokes has little weight
+    if np.isfinite(
+        about.stroke_middle
+    ):  # first a mean per speed, as one of hundreds of strokes has little weight
         levels = np.array([value[part].mean() for part in segments_by_speed(speed, finite)])
     return RunFacts(
         quantity=name,
@@ -216,7 +218,7 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
         what = "speed" if over_speed else "segment"
         count = f"{(kind == NOT_CLEAR).sum()} of {many(kind.size, what)}"
         return Waveform(NOT_CLEAR, f"{'at' if over_speed else 'in'} {count}")
-    if not moving.any():  # without a speed, rests may be among the sliding
+    if not moving.any():  # without a speed, a segment may be a rest
         return Waveform(STEADY_SLIDING, "" if over_speed else "if it slides: speed not known")
     names, counts = np.unique(kind[moving], return_counts=True)
     ordered = [str(name) for name in names[np.argsort(-counts, kind="stable")]]

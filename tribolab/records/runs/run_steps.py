@@ -13,7 +13,7 @@ _DIFFERS = 0.1  # relative difference of friction between steps
 
 
 def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
-    """Return text if steps have different friction, so that their mean mixes conditions.
+    """Return a warning if friction differs between steps: their mean then mixes conditions.
 
     Parameters
     ----------

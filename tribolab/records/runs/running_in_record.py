@@ -26,7 +26,7 @@ from tribolab.records.wording import error_text
 if TYPE_CHECKING:
     from tribolab.friction.points.mean_of_repeats import Mean
 
-_MATTERS = 0.02  # change of friction over its mean; smaller than the scatter of repeats
+_MATTERS = 0.02  # relative change of friction; less is within the scatter of repeats
 _COUNTED = "unit of averaging: cycles, single strokes, or intervals of equal duration"
 _WEAR = "displacement normal to the contact, end minus beginning"
 

@@ -27,12 +27,12 @@ _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position":
 _LABELS = {**_MOTION, "inertial_force": "inertia"}
 _MAX_SPANS = 400
 _FINE_CHARACTERS = 4.0  # upper estimate per point of two noisy signals, compressed
-_FEWER = 1.3  # exponent of the share of points that fits: fewer points compress worse
+_FEWER = 1.3  # points ~ bytes^1.3: fewer points compress worse
 _FINEST = 24_000  # points of a signal available for zooming
-_POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
-_BYTES, _FULL_SIZE_RUNS = 1.25e6, 32  # of all traces together, up to so many runs
-_MIN_FINER = 3400  # smaller ones show hardly more than the points shown on opening
-_COARSE_SHARE = 0.3  # share for the points shown on opening
+_POINT_BYTES = 8.0  # bytes per point of two signals, compressed and as text
+_BYTES, _FULL_SIZE_RUNS = 1.25e6, 32  # bytes of all traces together, for up to this many runs
+_MIN_FINER = 3400  # bytes; a smaller trace for zooming shows hardly more than the first one
+_COARSE_SHARE = 0.3  # share of the bytes for the points shown on opening
 
 
 def page_trace(
@@ -192,7 +192,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: SharedTrace, points:
     for name, values in one_by_one(signals):
         chosen = _chosen(time, values, bounds, points)
         known = quantity(name)
-        # speeds cover decades: packed as drawn, linear only below the slowest segment
+        # speeds cover decades: scaled as drawn, linear only below the speed of the slowest segment
         below = _slowest(segments) if name in ("sliding_velocity", "set_speed") else None
         levels = values[chosen] if below is None else np.arcsinh(values[chosen] / below)
         packed.append(
@@ -238,7 +238,7 @@ def _slowest(segments: xr.Dataset) -> float | None:
 
 
 def _segments(segments: xr.Dataset, friction: xr.Dataset | None, name: str) -> list[list[Any]]:
-    """Start, stop, both after trimming, direction, mean in the unit of the trace, and speed."""
+    """Return rows: start, stop, trimmed start and stop, direction, mean of the trace, speed."""
     names = ("start", "stop", "trimmed_start", "trimmed_stop")
     bounds = np.column_stack([np.asarray(segments[n], float) for n in names])
     direction = np.asarray(segments["direction"], int)
