@@ -113,7 +113,7 @@ def model_inputs(
 
 
 def _columns(above: xr.Dataset, below: xr.Dataset) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return fluid friction and both theories' solid friction per shear stress, above and below."""
+    """Return pairs (input raised, input lowered): fluid friction, solid friction by each theory."""
     names = (_SOLID, f"{_SOLID}_other")
     fluid = [end[_PARTS[0]].values + end[_PARTS[1]].values for end in (above, below)]
     return [(fluid[0], fluid[1]), *((above[n].values, below[n].values) for n in names)]

@@ -95,7 +95,7 @@ def _locate(
         step = quantum(velocity)
         step = 0.0 if is_commanded(velocity, step) else step
         noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
-    else:  # given per sample: that of the search before
+    else:  # the noise per sample is known from the previous search
         noise = noise.scaled(size**-0.5)
     single = noise.scaled(size**0.5)
     if rest_speed is None:

@@ -144,7 +144,8 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
         return Noise(floor, nothing, nothing)
     speed, spread, share = speed[known], spread[known], share[known]
     relative = np.sqrt(np.maximum(spread**2 - floor**2, 0)) / speed
-    # speeds with few blocks are ramps, reversals or short plateaus: limit their noise to the best
+    # speeds with few blocks are ramps, reversals or short plateaus: their relative noise is
+    # limited to the smallest one of all speeds
     moves = speed > 3 * floor
     best = relative[moves].min() if moves.any() else np.inf
     relative = np.where(
@@ -165,7 +166,7 @@ def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def _spread(deviation: np.ndarray) -> float:
-    """Return the robust standard deviation of deviations that are mostly noise.
+    """Return a robust standard deviation from absolute deviations, most of which are noise.
 
     The median deviation of quantised, repeating readings is zero: then the mean without the largest
     tenth is used.

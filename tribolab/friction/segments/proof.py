@@ -30,7 +30,7 @@ from tribolab.friction.segments import limits
 from tribolab.friction.segments.noise import running_median
 
 _FITTED_READINGS = 512  # most readings of a fit; more are averaged in groups
-# smallest outlier over the range of velocities (False), positions (True)
+# smallest outlier as a share of the range of velocities (False) or positions (True)
 _OUTLIER_SHARES = {False: 0.2, True: 0.02}
 _SIDE_LENGTHS = (0.5, 1.0)  # trial lengths of the neighbourhood, relative to the piece
 _END_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # trial shifts of a piece's end, relative to its length

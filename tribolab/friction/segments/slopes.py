@@ -162,7 +162,7 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     at = far[jump]
     moved = position[at + 1] - position[at] - usual[jump] * (time[at + 1] - time[at])
     last = digit(position)
-    if last > 0:  # the joined readings keep their digits
+    if last > 0:  # shift by whole digits, so that the readings remain multiples of the digit
         moved = np.round(moved / last) * last
     ahead = np.concatenate([[0.0], np.cumsum(moved)])
     joined = room(position.size)

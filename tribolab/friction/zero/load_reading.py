@@ -18,7 +18,7 @@ from tribolab.friction.zero.words import of_leak, of_retained_load
 # half width over standard deviation of a uniform distribution
 WIDTH_OVER_SIGMA = np.sqrt(3)
 _NEAREST_RESTS = 4  # nearest rests that are compared with a segment
-# blocks into which readings are divided; their means scatter by slow waves and ramps, too
+# number of blocks of readings; slow waves and ramps also contribute to the scatter of their means
 _READING_BLOCKS = 5
 
 

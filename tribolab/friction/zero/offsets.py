@@ -84,7 +84,7 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
         weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-150)
         variances, _ = optimize.nnls(parts * weight[:, None], excess * weight)
         expected = noise + parts @ variances
-    # few squares determine a variance poorly: one standard error above it, as Student's t would;
-    # each with the other fixed, because even spacing does not separate them
+    # few squares determine a variance poorly: one standard error is added, as Student's t would
+    # do; for each variance with the other fixed, as evenly spaced strokes do not separate the two
     variances = variances + np.sqrt(2 / ((parts * weight[:, None]) ** 2).sum(axis=0))
     return Wander(float(variances[0]), float(variances[1] / scale))

@@ -40,7 +40,7 @@ class Coarse(NamedTuple):
 
 
 def motion_classes(velocity: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the velocity class (of rests, by the motion before) and direction of each sample."""
+    """Return velocity class and direction of each sample; a rest has those of the last motion."""
     classes = velocity_classes(velocity)
     way = np.sign(classes - _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value)
     return np.where(
