@@ -1,4 +1,4 @@
-"""Interpolation of tabulated flow and friction factors over the mean separation."""
+"""Interpolation of flow and friction factors tabulated against the mean separation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Flow and friction factors of a rough surface, tabulated over the mean separation."""
+"""Flow and friction factors of a rough surface, tabulated against the mean separation."""
 
 from __future__ import annotations
 
@@ -293,7 +293,7 @@ def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
 
 @over_dims(psd=("wavenumber",))
 def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> xr.Dataset:
-    """Return flow and friction factors over the mean separation in units of the rms roughness.
+    """Return flow and friction factors against the mean separation / rms roughness.
 
     Parameters
     ----------

@@ -85,7 +85,7 @@ class Solution(NamedTuple):
     flow: Flow
     residual: float  # largest error of p = p_contact + p_fluid, in units of the maximum pressure
     load_balance: float
-    flux_variation: float  # in the full film, over the larger of flux and entrainment
+    flux_variation: float  # in the full film, divided by the larger of flux and entrainment
     iterations: int
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from tribolab.contact.line import line_kernel
 
 _SERIES_DISTANCE = 6.0  # cell widths beyond which moments are computed from a series
-_GAUSS = 0.5 / np.sqrt(3)  # distance of Gauss points from an interval's centre, over its length
+_GAUSS = 0.5 / np.sqrt(3)  # distance of Gauss points from an interval's centre, in lengths of it
 _FINE = 129  # points for the search of the minimum film
 
 

@@ -49,7 +49,7 @@ _UNKNOWN = PowerLaw(*[float("nan")] * 5)
 
 
 class _Part(NamedTuple):
-    """Section of a spectrum, with lower and upper 95 % limits over C (2, wavenumber)."""
+    """Section of a spectrum, with lower and upper 95 % limits divided by C (2, wavenumber)."""
 
     wavenumber: np.ndarray
     value: np.ndarray

@@ -17,7 +17,7 @@ from tribolab.core.errors import AnalysisError
 _TRIALS = 16  # number of random positions at which the gaps are placed
 _MAX_MISSING = 0.5  # largest share of missing heights with which a scan is evaluated
 _FEW_MISSING = 8  # up to this many missing heights at an end are filled with the nearest height
-_STUDENT = 1.087  # 97.5 % quantile of Student's t (15 degrees of freedom) over the normal one
+_STUDENT = 1.087  # 97.5 % quantile of Student's t (15 degrees of freedom) / normal quantile
 _NORMAL = 1.96
 # share of the correction added to the error, because gaps do not occur at random
 _SHIFT_SHARE = 0.3

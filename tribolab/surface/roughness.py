@@ -18,7 +18,7 @@ from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
 STANDARD_CUTOFF = 0.8e-3  # m, default cut-off for most surfaces (ISO 21920-3)
-# usual number of sampling lengths; the cut-off of a shorter profile is its length over this
+# usual number of sampling lengths; the cut-off of a shorter profile is its length divided by this
 _LENGTHS = 5
 _MIN_LENGTHS = 3  # fewest sampling lengths that give the standard error of their mean
 

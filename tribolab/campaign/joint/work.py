@@ -240,7 +240,7 @@ def other_area_name(task: JointTask) -> str:
 
 
 def _computed_curve(task: JointTask, model: ModelOutcome) -> xr.Dataset:
-    """Return the computed curve over the campaign's speeds and the measured speeds."""
+    """Return the computed curve at the campaign's speeds and the measured speeds."""
     # imported late: xarray loads slowly
     import xarray as xr
 

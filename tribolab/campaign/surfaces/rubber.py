@@ -51,7 +51,7 @@ def rubber_objection(surface: PlannedSurface) -> Finding | None:
 def rubber_groups(
     surface: PlannedSurface, loads: xr.Dataset, psd: xr.Dataset, findings: list[Finding]
 ) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return the friction of the rubber over the loads and speed, and its modulus over frequency.
+    """Return the friction of the rubber at the loads and speeds, and its modulus by frequency.
 
     Parameters
     ----------

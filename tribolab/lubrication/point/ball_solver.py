@@ -123,7 +123,7 @@ class PointSolution(NamedTuple):
     flux: np.ndarray  # flux through the faces
     residual: float  # largest imbalance of a cell as a pressure, relative to the maximum pressure
     load_balance: float
-    flux_variation: float  # largest net outflow of a cell in the full film, over the largest flux
+    flux_variation: float  # largest net outflow of a cell in the full film / largest flux
     iterations: int
 
 

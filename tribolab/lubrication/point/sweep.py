@@ -23,7 +23,7 @@ from tribolab.lubrication.point.ball_solver import (
 )
 from tribolab.lubrication.speeds import System
 
-_SHARE = 0.375  # number of rings over that of cells in a line contact: 60 for 160
+_SHARE = 0.375  # rings per cell of a line contact: 60 for 160
 _SECTORS = 24
 _FAR_END, _EXTRA_RINGS = 4.0, 0.25  # extent above which rings are added, and their share per decade
 _CLASS_RATIO = 10.0  # films whose thicknesses differ by less than this factor share a mesh

@@ -172,7 +172,7 @@ _SLIPS = (
     "The contact sticks and slips. A slip shorter than a sample looks like this; record faster to "
     "resolve it. Outliers at rest are a disturbance. The mean hardly changes."
 )
-_STRONG = 0.03  # standard deviation over friction above which an oscillation is stick-slip
+_STRONG = 0.03  # standard deviation divided by friction, above which an oscillation is stick-slip
 
 
 def _sticks_and_slips(subject: RunSubject) -> bool:

@@ -25,7 +25,7 @@ from tribolab.reading.raw.server import Ended, Job
 from tribolab.reading.raw.unpacked import ZIP, refuse_bomb
 
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE = 0, 3, 4, 5
-_TEXT_PER_NUMBER = 4  # limit of a result file over that of its arrays: text is longer than numbers
+_TEXT_PER_NUMBER = 4  # ratio of the limits of a result file and of its arrays: text is longer
 _PIPE = 1 << 15  # most bytes of module names that a child sends
 _POLL = 0.01  # s between checks of a child, if the system cannot wait for one
 
