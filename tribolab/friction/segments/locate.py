@@ -118,7 +118,7 @@ def _locate(
     for i in range(straight.first.size):
         first, last = int(edges[i]), int(edges[i + 1])
         mean, change = float(straight.mean[i]), float(straight.change[i])
-        kind = _kind(
+        kind = _rest_ramp_or_constant(
             mean,
             change,
             straight.mean_error[i],
@@ -162,9 +162,13 @@ def _leftover(
     return [p._replace(first=p.first + first, last=p.last + first) for p in inner]
 
 
-def _kind(
+def _rest_ramp_or_constant(
     mean: float, change: float, error: float, change_error: float, rest_speed: float, drift: float
 ) -> str:
+    """Decide whether a piece of the velocity [m/s] is at rest, a ramp, or at constant speed.
+
+    It is at rest if its mean is below `rest_speed` or within the error of zero.
+    """
     sure = abs(change) - limits.MIN_ERRORS_OF_RAMP.value * change_error
     if abs(mean) <= max(rest_speed, limits.MIN_ERRORS_FROM_REST.value * error):
         return "ramp" if sure > limits.MIN_CHANGE_AT_REST.value * rest_speed else "at rest"
