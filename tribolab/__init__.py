@@ -84,7 +84,7 @@ def __getattr__(name: str) -> Any:
     except AttributeError:
         if name.startswith("_"):
             raise
-    # until the next release, names of the groups that once were here
+    # until the next release, names formerly in this package are still found in their groups
     for group in _GROUPS_OF_FORMER_NAMES:
         home = _load(group)
         if name in home.__all__:

@@ -28,7 +28,7 @@ _UNREADABLE = 3
 
 
 def code_of(checked: Sequence[Checked], fail_on: str) -> int:
-    """Return the exit code: 3 for unreadable files, 1 for objections from `fail_on` on, else 0."""
+    """Return the exit code: 3 if files are unreadable, 1 if checks reach `fail_on`, else 0."""
     code = exit_code({c.status for c in checked if not c.error}, fail_on)
     return _UNREADABLE if any(c.error for c in checked) else code
 

@@ -52,8 +52,8 @@ class Checked:
 
     @classmethod
     def of(cls, files: Iterable[Path], findings: Findings, kind: str = "run") -> Checked:
-        """Return the findings on some files as a result of the checks."""
-        # the summary follows the name of the file, so it must not repeat the name
+        """Return the result of the checks of some files, made from their findings."""
+        # the file name is shown before the summary, which must not repeat it
         summary = findings.summary.removeprefix(findings.name).removeprefix(": ")
         return cls(tuple(files), tuple(findings.rows), findings.status, summary, kind=kind)
 

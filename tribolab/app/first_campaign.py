@@ -85,7 +85,7 @@ def campaign_file(
     try:
         before = campaign_text(whole, folder.resolve(), results)
         if (instrument is not None or lines) and _has_text(file, before):
-            file.unlink()  # written by an earlier attempt, and unchanged
+            file.unlink()  # an earlier attempt wrote it, and nobody has edited it
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except FileExistsError:
@@ -118,7 +118,7 @@ def _raw_files(paths: Sequence[Path], folder: Path) -> tuple[list[Path], Path, P
     raw = [path for path in left if path not in ours]
     whole = [path.resolve() for path in raw if may_hold_data(path)]
     own = [path for path in ours if path.suffix != ".toml" or _names_all(path, whole)]
-    if raw and len(own) == 1 and ours:  # `tribolab run *.*` was repeated
+    if raw and len(own) == 1 and ours:  # `tribolab run *.*` again: its campaign file exists
         return [], folder, own[0]
     for path in left:
         if not path.is_file() or path in ours:

@@ -9,7 +9,7 @@ FILES = (
 
 SIMULATION = ("tribolab.app.plain", "tribolab.rig.campaign", "scipy.linalg")
 
-# the module with all stages first, then what the stages import late
+# first the module with all stages, then the modules that the stages import late
 ANALYSIS = (
     "tribolab.app.plain",
     "tribolab.campaign.pipeline",

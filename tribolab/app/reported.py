@@ -72,7 +72,7 @@ def _warn_of(old: str, instead: str) -> None:
 
 @contextlib.contextmanager
 def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
-    """Print any error in this context as a short message, and exit with the fitting code."""
+    """Print any error in this context as a short message, and exit with the code of this error."""
     try:
         yield
     except (ConfigError, UnitError) as error:

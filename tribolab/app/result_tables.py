@@ -104,7 +104,7 @@ def _cells(settled: RunningIn) -> tuple[str, str, str]:
 def outcome_table(outcome: Outcome) -> Table:
     """Return a table with a row for each measured curve: conditions, speeds and friction."""
     done = [curve for curve in outcome.curves if curve.done]
-    # without labels the run's name distinguishes rows
+    # without surface and medium, the names of the runs distinguish the rows
     nameless = any(not (curve.surface or curve.medium) for curve in done)
     texts = (*(("run",) if nameless else ()), "surface", "medium")
     counts = ("load", "runs", "segments")
@@ -173,7 +173,7 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
 
 
 def _largest_error(points: Sequence[Row], with_zero: bool = True) -> str:
-    """Return text on the largest U95 of some points, and what it includes."""
+    """Return text on the largest U95 of some points, and its source."""
     own = [row.get("friction_coefficient_U95") for row in points]
     known = [float(v) for v in own if v is not None]
     if not known:

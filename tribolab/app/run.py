@@ -122,11 +122,11 @@ def run_campaign(
     if known is not None:
         return known
     if executor is None and jobs is None and scheduler is None and _is_one_changed(runs, place):
-        jobs = 1  # starting processes would take longer
+        jobs = 1  # starting processes would take longer than one run
     with staged(place) as folder:
         given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler, ANALYSIS)
         with given as pool:
-            if isinstance(pool, LastingPool):  # workers import modules while this process does
+            if isinstance(pool, LastingPool):  # workers and this process import at the same time
                 pool.prepare()
             # imported late: not needed if nothing has changed
             from tribolab.campaign.pipeline import process

@@ -88,7 +88,7 @@ def prepared() -> Iterator[None]:
     replaced by others, e.g. by tests and notebooks, are left unchanged.
     """
     codecs.register_error(_ERRORS, _plain)
-    # checks report damaged numbers in words
+    # numpy's warnings are not needed, because checks report damaged numbers
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     warnings.formatwarning = lambda message, *_, **__: f"tribolab: {message}\n"
     pipes = {}

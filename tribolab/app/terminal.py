@@ -78,7 +78,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         ("suspect", "suspect"),
     ):
         runs = [run for run in outcome.runs if run.quality == quality]
-        # only runs with a full message need their record
+        # records are read only for runs whose reasons are listed
         names = _alike((run.name, _reasons_of_run(run, outcome)) for run in runs[:_HANDFUL])
         names += [run.name for run in runs[_HANDFUL:]]
         for surface in outcome.surfaces:
@@ -140,7 +140,7 @@ def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 
     entries = [(run.name, outcome.store.get("run", run.name, RunRecord)) for run in done]
     facts = [(name, entry.record.facts) for name, entry in entries if entry is not None]
-    # a run whose friction changes along it has a notice of its own
+    # runs whose friction changes have a separate notice
     facts = [(name, each) for name, each in facts if not any(r.changes for r in each.running_in)]
     text = undecided_trends((name, each.segments, each.quantity or "") for name, each in facts)
     return [text] if text else []

@@ -22,7 +22,7 @@ from tribolab.version import __version__
 
 # entries of report.json that differ between equal analyses, e.g. date and duration
 _PASSING = frozenset({"made_at", "versions", "seconds", "history", "reused"})
-# lists of figure files, because a verification draws no figures
+# lists of figure files: not compared, because a verification draws no figures
 _DRAWN = frozenset({"figures", "surface_figures", "model_figures", "sliding_figures"})
 
 

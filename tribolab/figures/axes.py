@@ -18,7 +18,7 @@ _BELOW = 20  # error bars extend a log axis down to a point's value divided by t
 
 @dataclass(frozen=True)
 class Scale:
-    """Visible range of an axis, from `low` to `high`; on a log axis, their decimal logarithms.
+    """Visible range of an axis, from `low` to `high`; on a log axis, both are decimal logarithms.
 
     `names` are the texts along a categorical axis, from below; empty for an axis of numbers.
     """
@@ -71,7 +71,7 @@ def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
     x = replace(alike.x, include=_ends(along, alike.x))
     seen = _scale(x, iter(()), level=False)
     ends = _ends([y for p, series in panels for y in _y_values(series, p.y, seen)], alike.y)
-    if ends and alike.y.log and ends[1] < 10 * ends[0]:  # else there may be no tick below the data
+    if ends and alike.y.log and ends[1] < 10 * ends[0]:  # so that a tick is below the data
         power = 10.0 ** math.floor(math.log10(ends[0]))
         ends = max(m * power for m in _LOW_ENDS if m * power <= ends[0]), ends[1]
     return Panel(x, replace(alike.y, include=ends))

@@ -1,4 +1,4 @@
-"""Reduction of long traces to few points: extremes of noisy ones, every n-th of smooth ones."""
+"""Reduction of long traces to few points: extremes if noisy, every n-th point if smooth."""
 
 from __future__ import annotations
 

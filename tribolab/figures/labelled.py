@@ -16,7 +16,7 @@ OneOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]
 def by_label(
     results: OneOrSeveral, labels: Mapping[str, Sequence[RunLabel]], known: str
 ) -> dict[str, xr.Dataset]:
-    """Return several results as a dictionary by label, however they are given.
+    """Return results given as a mapping, a list or a dataset as a dictionary by label.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def by_label(
 
 
 def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
-    """Split a dataset along its further dims, and return its parts by label.
+    """Split a dataset along all dims except `known`, and return its parts by label.
 
     Parameters
     ----------

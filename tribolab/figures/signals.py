@@ -30,7 +30,7 @@ class Signal(NamedTuple):
 
 
 def offset_of(friction: xr.Dataset | None, name: str) -> float:
-    """Return the median of a variable of the friction result, e.g. a removed offset; else 0."""
+    """Return the median of a friction variable, e.g. of a removed offset; 0 if unknown."""
     if friction is None or name not in friction:
         return 0.0
     values = np.asarray(friction[name], float)

@@ -44,7 +44,7 @@ TABLES = {
     "decisions": "what a person decided on runs",
 }
 
-# numbers of a segment that friction.csv omits: components of U95, and what follows from others
+# columns of a segment that friction.csv omits, e.g. components of U95; report.json has them
 _NOT_IN_FRICTION = frozenset(
     (
         *("friction_coefficient_u", "friction_coefficient_dof", "friction_coefficient_beyond_dof"),
@@ -73,7 +73,7 @@ _SLIP = (
 
 
 def friction_row(row: Row) -> Row:
-    """Return the columns of a segment for friction.csv; half_loop_N only if µ is unknown.
+    """Return the columns of a segment for friction.csv, with half_loop_N only if µ is unknown.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def friction_row(row: Row) -> Row:
 
 
 class _LongTable(NamedTuple):
-    """Table that is written row by row, to save memory; not written without rows and columns."""
+    """Table that is written row by row, to save memory; no file without rows and columns."""
 
     file: str
     rows: Callable[[], Iterator[Row]]
@@ -140,7 +140,7 @@ def write_tables(
 
 
 def _sources(outcome: Outcome) -> pd.DataFrame:
-    """Return the table of raw files: checksum, run, and why and how long parts were left out."""
+    """Return the table of raw files: checksum, run, and the parts left out, with reasons."""
     by_file: dict[str, tuple[str, str]] = {}
     for entry in outcome.store.all("run", RunRecord):
         run = entry.record.outcome

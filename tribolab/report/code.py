@@ -1,4 +1,4 @@
-"""Checksums of the code behind a report, which is written again if the code has changed."""
+"""Checksums of the code that makes a report; if the code changes, the report is written again."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _WHOLE = (*_PYTHON, ".j2", ".js", ".css", ".LICENSE")
 
 @cache
 def code_of_figures() -> str:
-    """Return a checksum of the code that draws figures, and of its version."""
+    """Return a checksum of the package version and the code that draws figures."""
     return _checksum(_PYTHON)
 
 
 @cache
 def code_of_page() -> str:
-    """Return a checksum of all that shapes the report: code, version, templates and scripts."""
+    """Return a checksum of the package version and the code, templates and scripts of reports."""
     return _checksum(_WHOLE)
 
 
 def _checksum(kinds: tuple[str, ...]) -> str:
-    """Return a checksum of the package's files with given suffixes, wherever it is installed."""
+    """Return a checksum of files with given suffixes, independent of the installation path."""
     files = (file for room in _ROOMS for file in (_PACKAGE / room).rglob("*"))
     chosen = sorted((str(f.relative_to(_PACKAGE)), f) for f in files if f.suffix in kinds)
     return sha256_of([__version__, [[name, sha256_of_file(file)] for name, file in chosen]])

@@ -187,7 +187,7 @@ def _run_documents(outcome: Outcome) -> Iterator[Json]:
 def _summarise_runs(
     outcome: Outcome,
 ) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[FigureSpec]]:
-    """Return for all runs: short entries, notices, points by name, and figures along the runs."""
+    """Return short entries, notices and points of all runs, and figures of friction along runs."""
     briefs: list[Json] = []
     notices: list[Notice] = []
     points: dict[str, list[RunPoint]] = {}

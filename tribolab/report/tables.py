@@ -96,7 +96,7 @@ def _texts(values: Sequence[Any], dtype: str) -> list[Any]:
 
 
 def _types(rows: Iterable[Row]) -> dict[str, str]:
-    """Return the numpy type of each column, in order of their first appearance in the rows."""
+    """Return the numpy type of each column; columns are in the order of their first appearance."""
     kinds: dict[str, set[type]] = {}
     seen: Counter[str] = Counter()
     count = 0

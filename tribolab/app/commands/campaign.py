@@ -142,7 +142,7 @@ def run(
             if written:
                 withdraw(file)
             raise
-        # imported late: its imports were already needed for the analysis
+        # imported late: fast after the analysis, which has loaded the same modules
         from tribolab.app import terminal
 
         if new_folder and not any(part.done for part in (*outcome.runs, *outcome.surfaces)):
@@ -222,7 +222,7 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
         say(crash, to_stderr=True)
     nothing = bool(outcome.campaign.run) and not outcome.segments
     nothing = nothing and not any(run.ramp for run in outcome.runs)
-    if nothing and len(outcome.failed) < len(outcome.runs):  # else failure_lines has reasons
+    if nothing and len(outcome.failed) < len(outcome.runs):  # else failure_lines gives reasons
         say(
             "tribolab: no run contains a segment of constant speed (why: the check `segments`, "
             "above); `drift` and `min_samples` of [qc] limits.segments define constant",
@@ -238,5 +238,5 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     statuses = {run.quality for run in outcome.runs}
     statuses.update(*(surface.objections for surface in outcome.surfaces))
     if outcome.failed_models:
-        statuses.add("fail")  # as in the findings
+        statuses.add("fail")  # the same severity as in the findings
     return exit_code(statuses, outcome.campaign.qc.fail_on)

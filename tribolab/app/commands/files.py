@@ -93,7 +93,7 @@ def check(
         parts = checks.raw_files_of(files)
         files = [file for part, _ in parts for file in part]
         instrument = instrument or describe_with(stated, files)
-        code = check_output.code_of([], fail_on)  # report a wrong level before the work
+        code = check_output.code_of([], fail_on)  # a wrong `fail_on` must raise before the work
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             checked = [
                 one

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from tribolab.reading.text.first_bytes import wide_encoding
 
-_MAX_WHOLE = 1 << 26  # bytes of the longest file that is read as a whole
-_START, _PIECE, _PIECES = 1 << 18, 1 << 11, 512  # bytes of start and of a piece; pieces after it
-_MAX_LINE = 1 << 16  # bytes of the longest line
+_MAX_WHOLE = 1 << 26  # largest size of a file that is read as a whole [bytes]
+_START, _PIECE, _PIECES = 1 << 18, 1 << 11, 512  # start and piece size [bytes]; number of pieces
+_MAX_LINE = 1 << 16  # largest length of a line [bytes]
 
 
 class Excerpt(NamedTuple):
-    """Excerpt of a file, its number of lines, and the estimated number of the whole file."""
+    """Excerpt of a file, its number of lines, and the estimated number in the whole file."""
 
     file: Path
     lines: int

@@ -67,7 +67,7 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
 
 
 def _excerpt_lines(part: Excerpt, path: Path, instrument: str | Path | None) -> list[str]:
-    """Return lines on how a long run is read, from an excerpt; empty if that is not enough."""
+    """Return lines on how a long run is read, from an excerpt; empty if this does not suffice."""
     try:
         kind = kind_of(path, instrument)
         drafted = kind == "unknown" and is_run_file(path)
@@ -144,7 +144,7 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
         """Return the reason why a file could not be read; raise if the instrument is wrong."""
         if isinstance(error, TribolabError) and not isinstance(error, ReadError):
             raise error
-        read = isinstance(error, ReadError)  # other files are still described
+        read = isinstance(error, ReadError)  # any other error is unexpected
         return Described(
             task[0], error=message_for(error, "terminal") if read else explain(error)[0]
         )
@@ -157,7 +157,7 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
 
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
-    """Return the traces of a scan by file; if a file is no scan, raise the error of a run."""
+    """Return the traces of a scan by file; if it is no scan, raise the error as for a run."""
     # imported late for a quick start
     from tribolab.reading.scan_files import read_traces
     from tribolab.reading.scans.formats.profilometers import MissingUnitError
@@ -202,7 +202,7 @@ def _is_explained(path: Path, error: ReadError) -> bool:
     if isinstance(error, RefusedError):
         return True
     if isinstance(error, GuessedError | RefusedScanError):
-        return isinstance(error, RefusedScanError)  # a guess is also tried as a run
+        return isinstance(error, RefusedScanError)  # with a guess, the file is also tried as a run
     try:
         check_regular(path)
         if is_own_text(path):

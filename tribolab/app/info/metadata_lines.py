@@ -33,7 +33,7 @@ def metadata_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
     others = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _SHOWN_ABOVE}
     if float(others.get("x_unevenness", 1.0)) < _ROUNDING:
         del others["x_unevenness"]
-    if "to_keep_it" in others:  # a command that works in the current folder
+    if "to_keep_it" in others:  # show a command that works from the current folder
         # imported late for a quick start
         from tribolab.reading.unknown.proposal.questions import how_to_keep
 

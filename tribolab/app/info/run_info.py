@@ -74,7 +74,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
     names = set(facts["columns"])
     forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
     if not names & forces and names & _OF_MOTION:
-        return []  # a motion log, whose run has its forces in another log
+        return []  # a log of motion only: the forces of the run are in another log
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
     if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:

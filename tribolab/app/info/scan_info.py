@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _LARGEST_MAP = 20_000_000  # most points of a map whose areal roughness is computed here
 _LARGEST = 2_000_000  # most points of a scan whose profile roughness is computed here
-_OTHER_FORM = 0.02  # roughness with only the tilt removed is shown if it differs by more
+_OTHER_FORM = 0.02  # roughness with only the tilt removed is shown if it differs by more than this
 
 
 def stated_lines(attrs: Mapping[str, Any]) -> list[str]:

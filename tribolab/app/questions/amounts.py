@@ -30,7 +30,7 @@ def set_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
 
 
 def answered_amount(draft: Draft, amount: str) -> str:
-    """Return the load, speed or rate that the user has answered; "" without an answer."""
+    """Return the load, speed or rate from the answers of the user; "" if there is none."""
     understood = draft.understood
     if understood is None:
         return ""

@@ -160,7 +160,7 @@ def _ask_for_lengths(
         radius = _ask_amount(question, "radius", "m", guess, ask, say, likely)
         if (
             radius and value is not None and radius == likely
-        ):  # confirmed: the value that the file states
+        ):  # the user confirms the value in the file
             agreed = (*understood.agreed, ("radius", value.text))
             understood = understood._replace(agreed=agreed)
         else:

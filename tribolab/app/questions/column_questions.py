@@ -65,7 +65,7 @@ def ask_for(
     likely = amount_of(value)
     if lines:
         question += f"; is it in {lines}?" + (f" (yes: {likely})" if likely else "")
-    # the column is known, and only its unit is missing
+    # if only its unit is missing, the column counts as typed
     typed = str(found.place) if found and found.fill_in and not found.guessed else ""
     while True:
         usual = YES[0] if likely else NONE
@@ -110,7 +110,7 @@ def column_of_any(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
 
 
 def _remove_quantities(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
-    """Return a draft in which no column has any of these quantities, except `but`."""
+    """Return a draft in which no column has any of these quantities, except the quantity `but`."""
     for name in names:
         if name != but and (name not in QUANTITIES or column_of(draft, name) is not None):
             draft = corrected(draft, name, None)

@@ -18,7 +18,7 @@ _AMOUNT = re.compile(  # "8 mm at 2 Hz"
     r"(?<![\w.,])(?P<number>\d+(?:[.,]\d+)?)\s*(?P<unit>[^\W\d_][^\s,;]*)"
 )
 NUMBER = re.compile(r"^[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?$")
-DECIMAL = re.compile(r"^[+-]?\d+[.,]\d+$")  # not a column number
+DECIMAL = re.compile(r"^[+-]?\d+[.,]\d+$")  # a decimal number, hence no column number
 _RADIUS = re.compile(r"\b(radius|diameter)\b", re.IGNORECASE)
 _EXAMPLE = {"load": "20 N", "speed": "6 mm/min", "rate": "100 Hz"}
 _USUAL = {"m": "mm", "N": "N", "m/s": "mm/s", "Hz": "Hz", "s": "s"}

@@ -117,7 +117,7 @@ def compare_run(
     cover = np.where(same, overlap, -np.inf) / (stop - start)[:, None]
     best = cover.argmax(axis=1) if size else np.zeros(len(true), dtype=int)
     hit = cover.max(axis=1, initial=-np.inf) > _HALF
-    # a measured segment that covers two true ones is matched with one; the other is missed
+    # if a measured segment covers two true ones, the less covered one counts as missed
     order = np.argsort(-cover.max(axis=1, initial=-np.inf), kind="stable")
     taken: dict[int, int] = {}
     for row in order[hit[order]]:

@@ -83,7 +83,7 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
 
 
 def _with_bounds(column: str) -> list[str]:
-    """Return the names of a column, its lower and its upper bound, each with the unit last."""
+    """Return the column names of a value and its two bounds, each name ending in the unit."""
     name, unit = (column.removesuffix("_m"), "_m") if column.endswith("_m") else (column, "")
     return [f"{name}{end}{unit}" for end in ("", "_low", "_high")]
 

@@ -52,7 +52,7 @@ def symlog(axes: Axes, linear_below: float, low: float, high: float) -> None:
     """Make an ordinate logarithmic for positive and negative values, and linear near zero."""
     first = int(np.floor(np.log10(linear_below) + 1e-9))
     largest = max(abs(low), abs(high), linear_below)
-    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # data may exceed the decade by 26 %
+    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # data may exceed this decade by 26 %
     axes.set_yscale("symlog", linthresh=10.0**first, linscale=0.8)
     step = max(1, -(-(last - first) // 2))
     # the label of the lowest decade would overlap that of zero

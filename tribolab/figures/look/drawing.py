@@ -119,7 +119,7 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         )
         if any(series.style == "heat" for series in mine):
             _colour_bar(axes)
-        axes.set_xlim(limits[0])  # undo the change of limits by error bars
+        axes.set_xlim(limits[0])  # restore the limits, which error bars have changed
         axes.set_ylim(limits[1])
         axes.set_xlabel(axis_text(panel.x) if _is_last(spec, number) else "")
         if not y.names and _is_first(spec, number):

@@ -37,7 +37,7 @@ def whole_figure(part: Axes | SubFigure) -> Figure:
 
 @contextlib.contextmanager
 def guests(panels: Iterable[Axes]) -> Iterator[None]:
-    """Context for drawing in axes of the user; afterwards, their limits fit old and new data."""
+    """Context for drawing in axes of the user; afterwards, the axis limits fit old and new data."""
     before = [(ax, ax.has_data(), ax.get_xlim(), ax.get_ylim()) for ax in panels]
     yield
     for ax, had, old_x, old_y in before:

@@ -13,7 +13,7 @@ from tribolab.figures.look.style import DOUBLE_MM, SINGLE_MM, new_figure, tidy
 from tribolab.figures.spec import FigureSpec
 
 _RIGHT, _BOTTOM, _PANEL = 3.0, 10.5, 50.0  # right and lower margin, height of a panel [mm]
-_SHARED_GAP, _OWN_GAP = 3.0, 13.0  # gap between panels with a common abscissa, or without [mm]
+_SHARED_GAP, _OWN_GAP = 3.0, 13.0  # gap between panels that share an abscissa, or do not [mm]
 _ROW = 5.2  # height of a row of an axis with names [mm]
 _LETTER = 1.38  # mean width of a 7 pt character [mm]
 _LEGEND_ROW, _TITLE_ROW = 3.8, 4.5  # height of a legend row and of a title [mm]

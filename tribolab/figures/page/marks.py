@@ -129,7 +129,7 @@ def error_bars(
 def drawn_points(
     points: Sequence[PlacedPoint], series: Series, bars: str = "", areas: Sequence[float] = ()
 ) -> Iterator[str]:
-    """Yield the SVG of the error bars of a series, and of its markers with relative `areas`."""
+    """Yield the SVG of the error bars and markers of a series; `areas` scale the markers."""
     if bars:
         kind = "bar pale" if series.pale else "bar"
         yield f'<path class="{_hue(series)} {kind}" d="{bars}"/>'

@@ -195,7 +195,7 @@ def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
 
 
 def _band_edge(value: Any, box: _Box) -> Any:
-    """Return the lower edge of a band; on a log axis, a value below zero moves out of view."""
+    """Return the lower edge of a band; on a log axis, a value <= 0 is moved out of view."""
     if box.y.log and value is not None and not value > 0:
         return 10.0 ** (box.y.low - (box.y.high - box.y.low))
     return value

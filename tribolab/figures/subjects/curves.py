@@ -20,7 +20,7 @@ from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels,
 Scale = Literal["auto", "log", "linear"]
 MIN_RATIO_FOR_LOG = 5.0  # ratio of highest to lowest µ from which the axis is logarithmic
 _DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first available is drawn
-# coordinate of a dataset with several curves: the attribute with the same meaning in one curve
+# coordinate in a dataset of several curves, and the equivalent attribute of a single curve
 _ATTRIBUTES = {
     "surface": "surface",
     "medium": "medium",

@@ -80,7 +80,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
 
 
 def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Arguments]:
-    """Return the look of each curve: colour by surface, shade by load, marker by medium."""
+    """Return the looks of curves: colour by surface, shade by load, marker by load and medium."""
     own = [str(name) or surface for name in curves["surface"].values]
     colours = surface_colours([*surfaces, *own])
     loads = curves["load"].values
@@ -89,7 +89,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
     for name, load in zip(own, loads, strict=True):
         of_surface = np.unique(loads[[other == name for other in own]])
         rank = int(np.searchsorted(of_surface, load))
-        again = seen.count((name, load))  # number of other media with this surface and load
+        again = seen.count((name, load))  # earlier curves with this surface and load
         seen.append((name, load))
         shade = shade_of(rank, of_surface.size)
         marker = rank + again * of_surface.size
@@ -98,7 +98,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
 
 
 def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) -> list[Series]:
-    """Return the series for one load: band, line, points, residuals, residuals by shared errors."""
+    """Return the series for one load: band, line, points, residuals and their shared part."""
     v, measured = curve["sliding_speed"].values, points["sliding_speed"].values
     mu, sem = (points[f"friction_coefficient{end}"].values for end in ("", "_sem"))
     off, shared = (
@@ -159,7 +159,7 @@ def model_sensitivity(
     change = 100 * (uncertainty["friction_coefficient_varied"].values - mu) / mu.max()
     filled = np.nan_to_num(change)
     place = np.argmax(np.abs(filled), axis=-1)[..., None]
-    # largest change over all speeds, with its sign (variation, end)
+    # change of largest magnitude among all speeds, with its sign (variation, end)
     most = np.take_along_axis(filled, place, axis=-1)[..., 0]
     most = np.where(np.isfinite(change).any(axis=-1), most, np.nan)
     order = np.argsort(np.nanmax(np.abs(np.nan_to_num(most)), axis=1))

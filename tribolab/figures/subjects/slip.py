@@ -301,7 +301,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
 
 
 def _each(curves: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return the curves in a dataset by label, in reverse order: the first is drawn on top."""
+    """Return the curves of a dataset by label, in reverse order to draw the first on top."""
     named = {label: one_curve(part) for label, part in parts(curves, "sliding_speed").items()}
     return {label: part for label, part in reversed(named.items()) if part.sizes["sliding_speed"]}
 

@@ -33,7 +33,7 @@ def curve_notices(curve: CurveRecord) -> list[Notice]:
 
 
 def _pairs(curve: CurveRecord) -> tuple[list[tuple[float, float, float]], int]:
-    """Return speed and µ with and without decisions, and the number of speeds without µ now."""
+    """Return speed and µ with and without decisions, and at how many speeds decisions removed µ."""
     now = [(v, mu) for row in curve.points if (v := row[_SPEED]) and (mu := row[_MU]) is not None]
     speeds = np.array([speed for speed, _ in now], dtype=float)
     pairs, lost = [], 0

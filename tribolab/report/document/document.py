@@ -41,14 +41,14 @@ if TYPE_CHECKING:
     from tribolab.records.part_records import FigureRecord
     from tribolab.records.parts import CurveOutcome, Notice, RunOutcome, SurfaceOutcome
 
-_BY_HAND = ("rejected", "accepted")  # possible decisions on a run
+_BY_HAND = ("rejected", "accepted")  # manual decisions on a run
 _HEAD = TypeAdapter(ReportHead)
 _INSTRUMENTS = 3  # most instruments with separate ranges in the headline
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
 def labels(what: RunOutcome | CurveOutcome) -> Row:
-    """Return surface, medium and nominal load under the column names of all tables."""
+    """Return surface, medium and nominal load as a row with the column names of all tables."""
     return {
         "surface": what.surface,
         "medium": what.medium,
@@ -262,7 +262,7 @@ def _bounds(runs: Iterable[Mapping[str, Any]]) -> list[float]:
 
 
 def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
-    """Return the steady friction of each run; empty unless all run in and become steady."""
+    """Return the steady friction of each run; empty unless friction changes and settles in all."""
     settled = [run.get("running_in", ()) for run in runs]
     if not all(len(rows) == 1 and rows[0]["verdict"] != NONE for rows in settled):
         return []
@@ -271,7 +271,7 @@ def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
 
 
 def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
-    """Return text on the range of the measured values, for up to three instruments separately."""
+    """Return text on the range of the measured values, separately for up to three instruments."""
     apart: dict[str, list[Mapping[str, Any]]] = {}
     for run in runs:
         if run["value_min"] is not None:

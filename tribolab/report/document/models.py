@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import ModelOutcome, Row
 
 _STATISTICAL = "statistical only: the spectrum's error is not in it"
-MODEL_COLUMNS = {  # results that need other models or the surface, and their meanings
+MODEL_COLUMNS = {  # columns that need other models or the surface, and their meanings
     "area_dry_over_wet": "real contact area, dry divided by in the medium",
     "judgement": "where measurement and model differ, in words",
     "spectrum_error_low": "relative change of the shear stress due to the uncertain spectrum, down",
@@ -91,7 +91,7 @@ def model_rows_of(records: Iterable[ModelRecord]) -> dict[str, ModelRow]:
 
 
 def complete(rows: Sequence[ModelRow]) -> None:
-    """Add to each fit the error due to the spectrum, and the ratio to an earlier surface.
+    """Add to each fit the error due to the spectrum, and the stress ratio to an earlier surface.
 
     The error due to the spectrum is known at the load at which the model's uncertainty was
     computed. It scales the whole plateau, so it is also used at the other loads of the surface.
@@ -116,7 +116,7 @@ def complete(rows: Sequence[ModelRow]) -> None:
         fit["shear_stress_high_Pa"] = stress + float(np.hypot(half, stress * high))
     for place, (model, fit) in enumerate(fitted):
         fit |= {"ratio_to": "", "ratio": None, "ratio_error": None}
-        # earlier models in the campaign at the same load in the same medium
+        # models earlier in the campaign, at the same load and in the same medium
         earlier = [
             (other, of)
             for other, of in fitted[:place]
@@ -140,14 +140,14 @@ def complete(rows: Sequence[ModelRow]) -> None:
 
 
 def _add_spectrum(fit: Json, relative: float) -> None:
-    """Combine the relative error due to the spectrum with the errors of both shear stresses."""
+    """Combine the spectrum's error with those of the shear stress and of its corrected value."""
     for name in ("shear_stress_total_error_Pa", "corrected_shear_stress_error_Pa"):
         value = "corrected_shear_stress_Pa" if "corrected" in name else "shear_stress_Pa"
         fit[name] = float(np.hypot(fit[name], relative * fit[value]))
 
 
 def _is_known(fit: Json) -> bool:
-    """Whether a corrected shear stress exceeds twice its error, so that a ratio makes sense."""
+    """Whether a corrected shear stress exceeds twice its error, so that ratios to it make sense."""
     return fit["corrected_shear_stress_Pa"] > 2 * fit["corrected_shear_stress_error_Pa"]
 
 

@@ -1,4 +1,4 @@
-"""Option that selects the figure files of a report; a small module, for a fast start."""
+"""Option that selects the figure files of a report, in a module that imports quickly."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 DRAWING = threading.Lock()
 SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
 _MAX_LABELS = 12  # most labels in the legend of one figure
-_KEYS = {"surfaces": 1, "contact": 1, "model": 2, "sliding": 3}  # index of SECTIONS by page section
+_KEYS = {"surfaces": 1, "contact": 1, "model": 2, "sliding": 3}  # page section: index in SECTIONS
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Figures(Recorded[FigureTask, DrawnFigures, Notice]):
     record = DrawnFigures
 
     def taken(self, task: FigureTask, record: DrawnFigures) -> DrawnFigures | None:
-        """Return the record if all its files can be reused: figures, numbers, and wanted PDFs."""
+        """Return the record if all files can be reused: figures, tables, and PDFs if wanted."""
         files = [name for one in record.figures for name in (one.file, one.data) if name]
         files += [_pdf(one.file) for one in record.figures if task.pdf]
         return record if all(map(self._store.link_file, files)) else None
@@ -179,7 +179,7 @@ def file_name(spec: FigureSpec) -> str:
 
 
 def on_paper(spec: FigureSpec) -> list[FigureSpec]:
-    """Return a figure for paper with all loads, labelled and shaded (the page shows one load).
+    """Return a figure for publication with all loads, labelled and shaded; the page shows one.
 
     If the legend would be too long, return one figure for each load.
     """

@@ -14,7 +14,7 @@ from tribolab.report.page_figures.curves import system_name
 from tribolab.report.plain import listed
 
 _GRAVE = ("error", "fail", "suspect")
-_MAX_NAMED, _MAX_LISTED = 2, 6  # most runs with a separate doubt each; most runs named in one doubt
+_MAX_NAMED, _MAX_LISTED = 2, 6  # most runs that get a doubt each; most runs that one doubt names
 _REPEATS = "repeats"  # name of the check that compares repeats
 _COMPARE = "Compare its trace with those of its repeats."
 _COMPARE_ALL = (
@@ -102,7 +102,7 @@ def _uncertain_means(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 
 def _level(run: Mapping[str, Any]) -> float | None:
-    """Return the steady friction of a run at one speed, else the first number it highlights."""
+    """Return the steady friction of a run (if at one speed), else its first highlighted value."""
     steady = [row["steady_friction_coefficient"] for row in run.get("running_in", ())]
     highlights = [found["value"] for found in run.get("highlights", ())]
     return next(
@@ -150,7 +150,7 @@ def _of_findings(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 
 def _check_message(message: str, run: Mapping[str, Any] | None) -> str:
-    """Return the message of a check with which the text of a finding begins; else ""."""
+    """Return the longest check message with which a finding begins; "" if there is none."""
     checks = run["checks"] if run is not None else ()
     known = [check["message"] for check in checks if message.startswith(check["message"])]
     return max(known, key=len, default="")

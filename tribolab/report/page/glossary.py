@@ -69,7 +69,7 @@ OF_SURFACES = frozenset(
     ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Sq", "Slope rms", "Hurst exponent", "Roll-off")
 )
 
-# terms among these that only pages with a contact need
+# terms of OF_SURFACES that only pages with a contact need
 OF_CONTACT = frozenset(("A/A₀", "Pull-off force"))
 
 # terms that only pages with a model need
@@ -82,7 +82,7 @@ OF_MODELS = frozenset(
 
 
 def words_of(*, runs: bool, surfaces: bool, contact: bool, models: bool) -> dict[str, str]:
-    """Return the terms, with meanings, that a page needs for the parts it has.
+    """Return the terms with their meanings for the parts that a page has.
 
     >>> sorted(words_of(runs=False, surfaces=True, contact=False, models=False))[:3]
     ['Hurst exponent', 'Pq', 'Roll-off']

@@ -23,7 +23,7 @@ def by_speed(points: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
 
 def half_speed(falling: Sequence[Mapping[str, Any]]) -> float | None:
-    """Return the speed [m/s] at which friction has dropped to half that of the first point.
+    """Return the speed [m/s] at which friction has dropped to half its value at the first point.
 
     Interpolated on a logarithmic scale of speed; None if friction does not drop so far.
 

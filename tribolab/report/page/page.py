@@ -37,7 +37,7 @@ RunDocuments = Callable[[], Iterable[Json]]
 
 
 class Detail(NamedTuple):
-    """Details of one run: short entry, number from 1 (`place`), and the rest compressed.
+    """Details of one run: short entry, run number from 1 (`place`), and the compressed rest.
 
     Several runs are compressed together, because their details share most of their text: the first
     has the details of all in `packed`, which is empty for the others. `part` is the index in them.
@@ -179,7 +179,7 @@ def grouped_findings(findings: Sequence[Json]) -> list[Json]:
 
 
 def omitted_rows(runs: Sequence[Json]) -> list[Json]:
-    """Return why time of the records was left out: a row per reason, the longest time first."""
+    """Return the time left out of the records: a row for each reason, the longest time first."""
     total = sum(run["duration_s"] or 0.0 for run in runs)
     rows: dict[str, Json] = {}
     for run in runs:

@@ -17,7 +17,7 @@ from tribolab.report.plain import plain_speed
 
 _ODD = "odd"
 _ALL, _STEADY = "all speeds", "steady"
-_DIGITS = 6  # decimals of deviations in sorting, since two repeats deviate equally
+_DIGITS = 6  # decimals for sorting by deviation: two repeats deviate equally, but for rounding
 STATES = {
     "failed": "not used: could not be read",
     "rejected": "not used: a check failed",
@@ -129,7 +129,7 @@ def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
 
 
 def _most_common_speed(means: Sequence[Sequence[float | None]]) -> int:
-    """Return the index of the speed at which most runs have a value; of equals, the middle one."""
+    """Return the index of the speed with values from most runs; if several, the middle one."""
     counts = [sum(value is not None for value in column) for column in zip(*means, strict=True)]
     best = [place for place, count in enumerate(counts) if count == max(counts)]
     return best[len(best) // 2] if best else 0

@@ -32,7 +32,7 @@ def spark_path(trace: Mapping[str, Any]) -> str:
     column = np.minimum((time * _COLUMNS).astype(int), _COLUMNS - 1)
     first = np.flatnonzero(np.diff(column, prepend=-1))
     ends = np.c_[np.maximum.reduceat(y, first), np.minimum.reduceat(y, first)]
-    ends[1::2] = ends[1::2, ::-1]  # down one column, up the next
+    ends[1::2] = ends[1::2, ::-1]  # alternate, so that neighbouring columns join at one end
     x = np.round((column[first] + 0.5) * WIDTH / _COLUMNS).astype(int)
     points = [
         f"{a},{round(b)}" for a, pair in zip(x, ends, strict=True) for b in dict.fromkeys(pair)

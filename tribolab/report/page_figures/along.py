@@ -20,7 +20,7 @@ MAX_RUNS = 8  # most runs shown
 
 
 class Along(NamedTuple):
-    """A run at one speed, its friction row by row, and its running-in if the run is long enough."""
+    """A run at one speed, its friction along the path, and its running-in if it is long enough."""
 
     record: RunRecord
     course: Sequence[Row]
@@ -28,7 +28,7 @@ class Along(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """What each value is the mean of, e.g. a stroke."""
+        """Name of the interval that each value averages, e.g. a stroke."""
         return STROKES if self.settled is None else self.settled.counted
 
 
@@ -44,7 +44,7 @@ def along_of(record: RunRecord) -> Along | None:
 
 
 def _strokes(record: RunRecord) -> list[Row]:
-    """Return a row with the friction of each stroke of a run; empty if it has several speeds."""
+    """Return a row with friction for each stroke of a run; empty if the run has several speeds."""
     rows = [row for row in record.facts.segments if row.get("friction_coefficient") is not None]
     speeds = [number_of(row, "sliding_speed_m_s") or 0.0 for row in rows]
     tolerance = 1 + of_points.SPEED_TOLERANCE.value
@@ -67,7 +67,7 @@ _OVER = (
     ("cycles", Axis("cycle"), "number", ("start_number", "stop_number")),
 )
 _INK: Arguments = {"colour": BLACK}
-_STEADY = "steady"  # legend label of the lines at the steady friction, drawn last
+_STEADY = "steady"  # legend label of the lines at the steady friction; these lines are drawn last
 _MU = Axis("friction coefficient µ")
 
 

@@ -34,12 +34,12 @@ if TYPE_CHECKING:
 _ONE_RATIO = 1.1  # slide-roll ratios that differ by less than this factor count as equal
 _MAX_NAMED = 3  # most runs named in a title
 _AS_FOUND = "without decisions by hand"
-_SPEED, _ROLLING, _MU = "sliding_speed_m_s", "rolling_speed_m_s", "friction_coefficient"  # columns
+_SPEED, _ROLLING, _MU = "sliding_speed_m_s", "rolling_speed_m_s", "friction_coefficient"  # names
 
 
 @dataclass(frozen=True)
 class FrictionOverSpeed:
-    """Measured and computed friction against speed of a campaign.
+    """Measured and computed friction of a campaign against speed.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class FrictionOverSpeed:
 
 
 def systems(known: FrictionOverSpeed) -> dict[tuple[str, str], list[CurveRecord]]:
-    """Return the measured curves of each surface and medium, the lowest load first."""
+    """Return the measured curves by surface and medium, each list in order of increasing load."""
     by_system: dict[tuple[str, str], list[CurveRecord]] = {}
     for curve in known.curves:
         by_system.setdefault((curve.outcome.surface, curve.outcome.medium), []).append(curve)
@@ -105,7 +105,7 @@ def distinguish_media(media: Collection[str], in_liquid: str, dry: str) -> str:
 
 
 def card_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return a figure per surface and medium: measured curves, and the model with its band.
+    """Return a figure per surface and medium: measured curves, and computed ones with their bands.
 
     Figures with the same medium have the same axes, so that surfaces can be compared.
     """
@@ -134,7 +134,7 @@ def _card(
     name = system_name(surface, medium, list(all_runs))
     rows = [row for curve in curves for row in curve.points]
     values, every = ([number_of(row, name) for row in rows] for name in (_MU, _SPEED))
-    one_load = bool(surface or medium)  # without both, curves are different runs, all shown
+    one_load = bool(surface or medium)  # else curves are of different runs: show all
     spec = stribeck.spec(measured, models, surfaces=known.surfaces, scale="log")
     spec = _over_entrainment(spec, measured + models)
     return replace(
@@ -163,7 +163,7 @@ def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSp
 
 
 def _card_style(series: Series, one_load: bool) -> Series:
-    """Return a series in the style of a card: points not joined, and no shading of one load."""
+    """Return a series in the style of a card: points not joined; no shade if one load is shown."""
     if series.label == _AS_FOUND:
         return replace(series, colour=GREY, shade=0.0, open=True, joined=False)
     if one_load:
@@ -172,7 +172,7 @@ def _card_style(series: Series, one_load: bool) -> Series:
 
 
 def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
-    """Return the legend label of a measured curve, with its load or runs if there are several."""
+    """Return the legend label of a measured curve, with its load or runs if otherwise ambiguous."""
     loads = [other.outcome.normal_force for other in curves]
     nameless = not (curve.surface or curve.medium)
     if len(curves) > 1 and nameless:
@@ -237,7 +237,7 @@ def _first_component(text: str) -> str:
 
 
 def _as_found(curve: CurveRecord) -> list[xr.Dataset]:
-    """Return the curve as it was without manual decisions; empty without such decisions."""
+    """Return the curve as it was before manual decisions; empty if there are no decisions."""
     rows = [row for row in curve.points_as_found if row[_MU] is not None]
     words = [
         f"{_AS_FOUND}\nv = {plain_speed(number_of(row, _SPEED))}\n"
@@ -264,7 +264,7 @@ def slide_roll_ratio(curve: CurveRecord) -> float | None:
 
 
 def _near_measured(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
-    """Return the rows of a model from a tenth to ten times the measured speeds."""
+    """Return the rows of a model from 1/10 of the lowest to 10 times the highest measured speed."""
     known = [float(row["sliding_speed_m_s"] or 0) for row in curve.points]
     low, high = min(known) / 10, max(known) * 10
     return [row for row in rows if low <= float(row["sliding_speed_m_s"] or 0) <= high]

@@ -37,7 +37,7 @@ Bands = Callable[[Path], dict[str, Band]]
 def begun_page_figures(
     subjects: Sequence[Subject], store: Store, executor: Executor | None = None
 ) -> Callable[[], tuple[list[PageRecord], list[Notice]]]:
-    """Start to make the figures of the page; the returned function waits and returns them.
+    """Start to make the figures of the page; return a function that waits for them.
 
     Parameters
     ----------

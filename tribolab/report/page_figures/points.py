@@ -32,7 +32,7 @@ class RunPoint(NamedTuple):
 
 
 class PointError(NamedTuple):
-    """U95 of a point of a curve (`size`), its source, and the errors that it is made of."""
+    """U95 of a point of a curve (`size`), its source, and the errors within and between runs."""
 
     size: float | None
     source: str

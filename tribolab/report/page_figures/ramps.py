@@ -22,11 +22,11 @@ _BINS_PER_DECADE = 12
 _MIN_SAMPLES = 5  # fewest samples in a bin of speed
 _MIN_DECADES = 0.3
 _HEADS = "Ramp", "Mean load", "Speeds", "Highest µ ± U95", "Lowest µ ± U95"
-_SMOOTHED = 50  # number of intervals in which a run is tested for rising speed
+_SMOOTHED = 50  # number of intervals whose mean speeds show where the speed of a run rises
 
 
 class _Leg(NamedTuple):
-    """Rising or falling part of a speed ramp as a series, with its mean load [N]."""
+    """Rising or falling part of a speed ramp: its points as a series, and its mean load [N]."""
 
     series: Series
     load: float | None
@@ -150,7 +150,7 @@ def _legs(run: RunOutcome, place: int, file: Path) -> list[_Leg]:
 
 
 def _rising(speed: np.ndarray) -> np.ndarray:
-    """Return a mask (time): whether the speed, averaged in intervals, is rising."""
+    """Return a mask of samples at which the speed, averaged in intervals, is rising (time)."""
     edges = np.linspace(0, speed.size, min(_SMOOTHED, speed.size) + 1).astype(int)
     means = np.add.reduceat(np.nan_to_num(speed), edges[:-1]) / np.diff(edges)
     return np.repeat(np.gradient(means) > 0, np.diff(edges))

@@ -39,7 +39,7 @@ class _Opened:
         }
 
     def loads(self) -> xr.Dataset | None:
-        """Return the loads for marks at Hertz pressures, from the surface with most loads."""
+        """Return the loads whose Hertz pressures are marked, from the surface with most loads."""
         return max(self.read("loads").values(), key=lambda one: one.sizes["load"], default=None)
 
 

@@ -24,7 +24,7 @@ _STEADY = frozenset({"smooth sliding", _UNDECIDED})
 
 
 class Judged(NamedTuple):
-    """A measured curve, its sliding mode, and its slowest segments (None if it has none)."""
+    """A measured curve, its sliding mode, and its slowest segments if they are known."""
 
     curve: CurveOutcome
     mode: ModeRecord
@@ -60,7 +60,7 @@ def waveform_spec(judged: Sequence[Judged]) -> FigureSpec:
 
 
 def _waveform_curve(contact: Judged) -> xr.Dataset:
-    """Return the waveforms and drops of a curve as a dataset (sliding_speed), for the map."""
+    """Return the waveforms and drops of a curve for the map, as a dataset (sliding_speed)."""
     rows = contact.mode.speeds
     drops = [np.nan if row["drop"] is None else row["drop"] for row in rows]
     columns = {
