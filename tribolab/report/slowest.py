@@ -33,7 +33,7 @@ def lowest_loads(curves: Iterable[CurveOutcome]) -> list[CurveOutcome]:
 
 
 def slow_segments(curve: CurveOutcome, outcome: Outcome) -> Slow | None:
-    """Return the first run of a curve with forward strokes, and its slowest such segments.
+    """Return the first run of a curve that has forward strokes, with its slowest forward segments.
 
     Manually rejected segments are left out; None if no segment remains.
     """

@@ -99,7 +99,7 @@ def ask_for(
 
 
 def column_of_any(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
-    """Return the column of the first of these quantities that has a column; else None."""
+    """Return the column of the first quantity in `names` that has one; None if no quantity has."""
     columns = draft.understood.columns if draft.understood else ()
     for name in names:
         by_name = {TORQUE: torque_of, ANGLE: angle_of}.get(name)

@@ -188,7 +188,7 @@ def _rounded(match: re.Match[str]) -> str:
 def _shorten_path(match: re.Match[str]) -> str:
     """Return an SVG path with two decimals, and without the letters L that SVG does not need."""
     path = " ".join(_DECIMALS.sub(_rounded, match[1]).split())
-    if _POLYLINE.fullmatch(path):  # after M, pairs of numbers are lines also without L
+    if _POLYLINE.fullmatch(path):  # after M, SVG reads pairs of numbers as lines without L
         path = path.replace(" L ", " ")
     return f' d="{path}"'
 

@@ -23,7 +23,7 @@ _PANELS = (
     ("fluid_pressure", 1e-6, Axis("p liquid", "MPa", paper=r"fluid pressure $p_{\mathrm{fluid}}$")),
 )
 _MIN_PRESSURE_SHARE = 1e-3  # share of the maximum pressure below which a profile is cut off
-_WIDEST_GAP = 100.0  # largest ratio of two gaps that are drawn
+_WIDEST_GAP = 100.0  # largest gap divided by smallest gap, as drawn
 _MAX_POINTS = 160  # largest number of points of a profile
 _ACROSS = Axis("across the contact", "mm", paper="coordinate $x$")
 _FACTORS: tuple[tuple[str, str, Style, int], ...] = (

@@ -83,7 +83,7 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
 
 
 def _uncertain_means(document: Mapping[str, Any]) -> Iterable[Doubt]:
-    """Yield a doubt that names the conditions whose mean is uncertain, as their repeats scatter."""
+    """Yield a doubt that names the conditions whose mean is uncertain because repeats scatter."""
     levels = {run["name"]: _level(run) for run in document["runs"]}
     odd = {run["name"] for run in document["runs"] if is_odd(run)}
     wide = [

@@ -83,7 +83,7 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
 
 
 def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
-    """Return a table of running-in and steady friction of all runs at one speed; None if none.
+    """Return a table of running-in and steady friction of all runs at one speed, if there are any.
 
     The first rows are the means of repeats, with U95 from the scatter between them. If some repeats
     contradict the others, a second mean excludes them.

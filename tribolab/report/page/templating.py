@@ -208,7 +208,7 @@ def environment(folder: Path) -> jinja2.Environment:
 
 
 def _wider_error(row: Row, name: str, ending: str) -> float | None:
-    """Return the error of a segment: within its path, or beyond it (trend) if that is larger."""
+    """Return the larger of two errors of a segment: within its path, or beyond it (trend)."""
 
     def column(key: str) -> np.ndarray:
         return np.array(number_of(row, key), float)

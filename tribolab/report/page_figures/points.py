@@ -113,7 +113,7 @@ def _nearest(loads: Iterable[float], load: float) -> float:
 
 
 def of_curve(points: Iterable[RunPoint], load: float | None) -> list[RunPoint]:
-    """Return the points that belong to a curve under a given load [N]."""
+    """Return the points at a given load [N], and those of runs without an assigned load."""
     return [point for point in points if point.load in (None, load)]
 
 
