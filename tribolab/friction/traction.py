@@ -68,7 +68,7 @@ def stribeck_part(
 def traction_curves(
     frictions: Sequence[xr.Dataset], tolerance: float = SPEED_TOLERANCE.value
 ) -> xr.Dataset:
-    """Return friction over slide-roll ratio at each entrainment speed with three or more ratios.
+    """Return friction against slide-roll ratio at each entrainment speed with three or more ratios.
 
     Parameters
     ----------

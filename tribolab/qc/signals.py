@@ -79,7 +79,7 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 def _height(step: np.ndarray) -> np.ndarray:
     """Return how far each sample, except the two at each end, deviates from its neighbours."""
     bend = np.diff(step)
-    # deviation from the previous sample, and the line through two of them; the same for the next
+    # deviation from the last sample, and from the line through the last two; so for the next ones
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
     upward = np.minimum(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]))
     downward = np.maximum(np.maximum(sides[0], sides[1]), np.maximum(sides[2], sides[3]))
@@ -181,8 +181,8 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     others = max(values.size - longest, 1)
     if runs == 1:
         return uniform(values.size, SUSPECT)  # the whole signal is constant
-    # a signal quantised more coarsely than its noise often repeats values, so that the 99 %
-    # quantile of the lengths of equal values is usual
+    # a signal quantised more coarsely than its noise often repeats values: take the 99 % quantile
+    # of the lengths of equal runs as the usual length
     usual = _quantile(equal.lengths, equal.counts, 0.99)
     repeat = max((others - (runs - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
@@ -238,7 +238,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
 
 
 def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return readings of a slowly refreshed signal, and their number at each sample; else None."""
+    """Return a slowly refreshed signal's readings, and each sample's reading index; else None."""
     if values.size < 2 or values.size > _MAX_EXAMINED:
         return None
     changes = np.concatenate([[True], values[1:] != values[:-1]])

@@ -241,7 +241,7 @@ def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
 def _window_factors(
     missing: np.ndarray, left: np.ndarray, logarithms: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return corrections for overlapping gaps: of change (result, scan) and scatter (scan)."""
+    """Return factors, for moved gaps on real ones, of change (result, scan) and scatter (scan)."""
     there = 1.0 - missing.mean(axis=1)
     lost = np.log(np.maximum(left, 1.0 / missing.shape[1]) / there).mean(axis=0)
     fresh = (there - left).mean(axis=0) / np.where(there < 1.0, 1.0 - there, 1.0)

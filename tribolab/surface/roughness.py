@@ -158,7 +158,7 @@ class _Evaluation(NamedTuple):
         return int(round(0.5 * self.cut / self.pitch)) if self.cut and not self.filtered else 0
 
     def lengths(self, points: int) -> tuple[float, int]:
-        """Return the evaluation length [m] of some points, and its number of sampling lengths."""
+        """Return the evaluation length [m] of `points` points, and its sampling-length count."""
         length = (points - 2 * self.edge) * self.pitch
         return length, 5 if self.cut is None else max(1, int(round(length / self.cut - 0.25)))
 

@@ -219,7 +219,7 @@ def _energy(
     last: np.ndarray,
     data: dict[str, np.ndarray],
 ) -> np.ndarray:
-    """Return each cycle's energy friction coefficient: loop area over twice the stroke and load."""
+    """Return each cycle's energy friction coefficient: loop area / (2 * stroke * load)."""
     force = np.nan_to_num(np.asarray(run["friction_force"].values, float))
     if run.attrs.get("friction_force_rectified", False):
         return np.full(first.size, np.nan)

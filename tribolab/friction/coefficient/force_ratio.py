@@ -32,7 +32,7 @@ from tribolab.friction.zero.words import of_light_rest, of_partial_contact
 
 
 def force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Return the friction of segments, from recorded forces; only forces if the load is unknown."""
+    """Return each segment's friction coefficient from recorded forces; the force without a load."""
     time, force = run["time"].values, run["friction_force"].values
     parts = trimmed_slices(run, segments)
     turns = Turning.of(run, segments)
@@ -64,7 +64,7 @@ def force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) ->
         shared = reading.error
         zero = replace(zero, doubts=(*zero.doubts, *reading.doubts))
     if partial is not None and settings.offset != "none":
-        shared = np.hypot(shared, partial.level / WIDTH_OVER_SIGMA)  # either zero
+        shared = np.hypot(shared, partial.level / WIDTH_OVER_SIGMA)  # either may be the zero
         if partial.level > limits.DOUBTFUL_REST.value * load:
             doubted = of_partial_contact(partial, load, means.size)
             zero = replace(zero, doubts=(*zero.doubts, doubted))

@@ -10,7 +10,7 @@ from tribolab.arrays.medians import median
 from tribolab.friction.coefficient import limits
 
 _NOISE_OF_STEPS = 1.4826 / np.sqrt(2)  # from median step to standard deviation
-# shares of the rise above which readings are fitted: fewer and fewer for a pointed peak
+# readings above a share of the rise are fitted; the share is raised until a parabola fits
 _PEAK_SHARES = (0.8, 0.9, 0.95, 0.98)
 
 

@@ -1,4 +1,4 @@
-"""Friction from both sliding directions, without the tilt between force cell and contact."""
+"""Friction from both sliding directions, corrected for a tilt between force cell and contact."""
 
 from __future__ import annotations
 

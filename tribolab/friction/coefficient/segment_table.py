@@ -23,7 +23,7 @@ def column(estimates: list[Estimate], name: str) -> np.ndarray:
 def error_columns(
     estimates: list[Estimate], whole: Callable[[np.ndarray], np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Return standard error, degrees of freedom and U95 of means over the path, and beyond it.
+    """Return standard error, degrees of freedom and U95: of the mean over the path, and beyond it.
 
     `whole` turns errors by scatter into full errors, which include those of the zero and the load.
     """

@@ -24,9 +24,8 @@ from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
 _EXTENSION = 1.5  # the search is extended by this factor if the force still rises
-_END_SHARE = (
-    0.1  # share of the readings at the end; while their mean is the highest, the force rises
-)
+# the force still rises if the mean of this last share of the readings is the highest
+_END_SHARE = 0.1
 
 
 class _Start(NamedTuple):
@@ -176,7 +175,7 @@ def _starts(
         before = np.flatnonzero(end <= start[i] + 1e-9)
         earliest = stop[i - 1] if i else time[0]
         if not before.size or end[before[-1]] < earliest:
-            continue  # it moved before: this is no start
+            continue  # no rest since the previous segment: this is no start
         rest = before[-1]
         limit, latest = trimmed[i], start[i] + limits.MAX_TIME_OF_RISE.value * (stop[i] - start[i])
         if reach is not None and speed[i] > 0:

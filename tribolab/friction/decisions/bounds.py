@@ -1,4 +1,4 @@
-"""Change of the start or end of a segment; its values and the omitted intervals follow."""
+"""Change of the start or end of a segment, with its values and omitted intervals updated."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from tribolab.units.stamping import stamp
 DECISIONS = "decisions"  # name of the attribute with all decisions and the segments they concern
 # a decision concerns the segment that contains more than this share of its interval
 _MORE_THAN = 0.5
-_SHOWN = 3  # nearest segments listed in the message if a decision finds none
+_SHOWN = 3  # nearest segments listed in the message if a decision matches none
 DECISION_WORDS = {REJECT: "rejected", ACCEPT: "accepted", NEW_BOUNDS: "new bounds", NOTE: "noted"}
 
 

@@ -44,7 +44,7 @@ def kept(data: xr.Dataset) -> xr.Dataset:
 
 
 def compute_both(segments: xr.Dataset, compute: Callable[[xr.Dataset], xr.Dataset]) -> xr.Dataset:
-    """Return results of all segments, of which those not rejected are computed on their own.
+    """Return results of all segments; those of kept segments are computed without rejected ones.
 
     A stroke that slipped off the sample must not affect the zero of its neighbours; its own result
     is added for display.

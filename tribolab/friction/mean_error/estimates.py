@@ -154,7 +154,7 @@ class _Record(NamedTuple):
 def _describe(
     time: np.ndarray, values: np.ndarray, angle: np.ndarray | None = None
 ) -> _Record | Estimate:
-    """Return a record as means over intervals, or the estimate without scatter or samples."""
+    """Return a record as means over intervals; its estimate at once if constant or too short."""
     good = np.isfinite(values)
     if not good.all():
         time, values = time[good], values[good]
@@ -195,7 +195,7 @@ def _describe(
 
 
 def _without_many_turns(record: _Record, fine: np.ndarray, angle: np.ndarray) -> _Record:
-    """Return a record minus waves that repeat with each turn, which finer intervals resolve."""
+    """Return a record minus waves that repeat with each turn, fitted to finer intervals."""
     waves = fitted_waves(fine, in_step(fine, angle))
     repeated = np.sum([wave.signal for wave in waves], axis=0)
     return record._replace(

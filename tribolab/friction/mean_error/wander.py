@@ -29,7 +29,7 @@ from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 
 _MEMORY_GRID = np.geomspace(0.05, 6.0, 8)  # correlation times, as shares of the record
-# trial ratios of the white noise to the drift in variance, at low frequencies
+# trial ratios of the variance of white noise to that of the drift, at low frequencies
 _WHITE_SHARES = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 _MIN_COSINES = 4
 _MAX_STEPS = 60  # most steps of Newton's method for U95; about six are needed
@@ -39,7 +39,7 @@ _OUTSIDE_COVERAGE = 0.05
 
 
 class _Shapes(NamedTuple):
-    """Variances that each drift model gives the cosines and the mean, and its log prior (model)."""
+    """Variances of the cosines and of the mean under each drift model, and log prior (model)."""
 
     cosines: np.ndarray
     mean: np.ndarray
@@ -136,7 +136,7 @@ def _kept_cosines(
 
 
 def _half_interval(weight: np.ndarray, errors: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Return the half width of the interval with 95 % of each mixture of t distributions (record).
+    """Return the half width of the 95 % interval of each mixture of t distributions (record).
 
     Newton's method for the logarithm of the probability beyond it, as a function of the logarithm
     of the half interval; a step that leaves the bracket is replaced by a bisection.

@@ -12,7 +12,7 @@ from tribolab.friction.oscillation.oscillation import gather
 from tribolab.friction.oscillation.spectrum.survey import Survey
 
 _MAX_HARMONIC = 16  # highest harmonic that is examined on its own
-# ratios of frequency to that of a line, between which its surroundings lie
+# surroundings of a line: from its frequency divided by a factor to its frequency times the factor
 _SURROUNDINGS = (1.15, 1.5)
 _WINDOW_BINS = 0.8  # width of a line due to the window, in bins
 

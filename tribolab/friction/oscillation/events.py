@@ -11,7 +11,7 @@ from tribolab.friction.oscillation import limits
 
 # interval of a stick, from 0 to 1, in which the loading rate is determined
 _LOADING_PART = (0.08, 0.92)
-# cells of that interval, and cells in a window: fewer add noise
+# number of cells in that interval, and in the window for one slope; fewer cells add noise
 _LOADING_CELLS, _SLOPE_CELLS = 48, 16
 
 

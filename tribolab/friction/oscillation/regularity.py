@@ -82,7 +82,7 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
     for c in (0.3, 1.0):
         for a, b in ((ends[0], first - c * usual), (last + c * usual, ends[1])):
             if b - a > usual and _is_still(record, a, b, drop * min((b - a) / usual, 1.0)):
-                quiet += 0.5 * float(b - a)  # half, because both orders are tried
+                quiet += 0.5 * float(b - a)  # the mean over both orders of rise and drop
     share = float(np.clip(1 - quiet / (ends[1] - ends[0]), 0.0, 1.0))
     periods = between[~paused]
     if share < 1 - limits.MIN_QUIET_TIME.value:

@@ -205,7 +205,7 @@ def _fit(
 def _significant_orders(
     orders: np.ndarray, fits: list[_Fit], turns: float, off: float
 ) -> tuple[np.ndarray, float]:
-    """Return orders that are significant and stable in phase, and the share of each above noise."""
+    """Return significant orders with a stable phase, and their share of amplitude above noise."""
     size = np.array([fit.size for fit in fits])
     power, around = (abs(size) ** 2).mean(axis=0), np.mean([fit.around for fit in fits], axis=0)
     ratio = power / np.maximum(around, 1e-300)

@@ -229,7 +229,7 @@ def _form_words(examined: Examined, speed: float) -> list[str]:
 def _without_rig_wave(
     signal: SegmentSignal, motion: RigMotion | None
 ) -> tuple[np.ndarray, RigWave | None]:
-    """Return a segment minus waves that repeat with each turn or stroke of the rig, and these."""
+    """Return a segment minus waves that repeat with each turn or stroke of a rig, and the waves."""
     if motion is None:
         return signal.values, None
     good = np.isfinite(signal.values)

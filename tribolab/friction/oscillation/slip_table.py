@@ -258,7 +258,7 @@ def _grid(axes: list[np.ndarray]) -> np.ndarray:
 
 
 def _interpolated(grid: np.ndarray, axis: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """Return a spectrum interpolated to a grid, log against log; NaN beyond its ends."""
+    """Return a spectrum interpolated to a grid on log-log scales; NaN beyond its ends."""
     log = np.log(np.maximum(power, 1e-300))
     return np.exp(np.interp(np.log(grid), np.log(axis), log, left=np.nan, right=np.nan))
 

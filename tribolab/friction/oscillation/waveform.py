@@ -101,7 +101,7 @@ WAVEFORM_LIMITS = {
     "reversal": (0.0, 0.0, 6.0),  # -log10(p) of the test that rises and falls last equally long
     "skewness": (0.0, -4.0, 4.0),
     "sharpness": (0.0, 0.0, 4.0),  # absolute value of the skewness
-    "scatter": (0.5, 0.0, 0.8),  # standard deviation over mean of the periods
+    "scatter": (0.5, 0.0, 0.8),  # standard deviation of the periods divided by their mean
 }
 
 # one number for each class, in the order of CLASSES

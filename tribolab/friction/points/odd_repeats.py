@@ -52,7 +52,7 @@ def _contrasts(k: int) -> np.ndarray:
 
 
 def _scores(groups: Sequence[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return deviation over scatter of each repeat (sample, repeat), and the scatter elsewhere."""
+    """Return each repeat's deviation / scatter of the other conditions, and that scatter."""
     squares = [(values @ _contrasts(values.shape[1]).T) ** 2 for values in groups]
     scores, scatters = [], []
     for own, values in enumerate(groups):

@@ -85,7 +85,7 @@ def pairs_of(friction: xr.Dataset) -> np.ndarray:
 
 
 def wider_error(column: Callable[[str], np.ndarray], name: str, ending: str) -> np.ndarray:
-    """Return the larger error of each segment: over its path, or beyond it.
+    """Return the larger of each segment's errors: of the mean over its path, or beyond the path.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ def steady_segments(run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset)
 
 
 def _select_interval(segments: xr.Dataset, first: float, last: float, reason: str) -> xr.Dataset:
-    """Return segments between two times [s]; the rest becomes omitted."""
+    """Return segments between two times [s]; the remainder becomes omitted."""
     begin, end = segments["trimmed_start"].values, segments["trimmed_stop"].values
     new_begin, new_end = np.maximum(begin, first), np.minimum(end, last)
     left = new_end > new_begin

@@ -146,7 +146,7 @@ def find_segments(
         if "stroke_m" not in run.attrs:
             stretches, standstill = without_standstills(run, stretches)
             source = "position" if standstill else source
-        if "stroke_m" in run.attrs:  # a computed velocity has no noise: it is zero at rest
+        if "stroke_m" in run.attrs:  # a computed velocity has no noise: it is exactly zero at rest
             stretches = [_mark_ramp(run, stretch) for stretch in stretches]
     elif source == "position":
         stretches = apart(run, from_position(run, constancy, gap))

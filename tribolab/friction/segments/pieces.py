@@ -40,7 +40,7 @@ def moving(
     constancy: ConstancyLimits,
     velocity: np.ndarray | None = None,
 ) -> list[VelocityPiece]:
-    """Return the pieces with creep that is far slower than the highest speed marked as rest.
+    """Return the pieces; creep that is far slower than the highest speed is marked as rest.
 
     Also reclassify the noise of a speed recorded without its sign, whose mean is not zero.
 
@@ -99,7 +99,7 @@ def _is_folded_noise(velocity: np.ndarray) -> bool:
 def trimmed(
     data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
-    """Keep the part of each plateau with constant speed; the rest becomes a ramp.
+    """Keep the part of each plateau with constant speed; the remainder becomes a ramp.
 
     Parameters
     ----------

@@ -103,8 +103,8 @@ def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
         return position
     if width == 1:
         return position
-    # the highest excludes those close to it. At a start from rest all are equally high: rounding
-    # selects the earliest
+    # each peak, from the highest on, excludes those close to it; rounding makes the peaks at a
+    # start from rest equally high, and the earliest is selected
     order = np.argsort(-np.round(height, HEIGHT_DIGITS), kind="stable")
     taken = np.zeros(position[-1] + width + 2, dtype=bool)
     chosen = []
@@ -132,7 +132,7 @@ def _moments(
 
 
 def _merge_moments(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the moments of each two pieces after merging them."""
+    """Return the moments of each pair of pieces after merging the pair."""
     total = a[1] + b[1]
     share = a[1] * b[1] / total
     dt, dv = b[2] - a[2], b[3] - a[3]

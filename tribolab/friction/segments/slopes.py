@@ -34,7 +34,7 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
 
 
 def _chord_error(time: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Return each reading's distance from the line between its neighbours, scaled to its noise."""
+    """Return each reading's distance from its neighbours' chord, scaled to one reading's noise."""
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
@@ -79,7 +79,7 @@ def digit(position: np.ndarray) -> float:
 
 
 def _is_commanded(position: np.ndarray, step: float) -> bool:
-    """Return whether a position increases by equal steps or rests, as a set-point does."""
+    """Return whether a position changes by equal steps or not at all, as a set-point does."""
     moves = others = alone = 0
     for first, last in pieces(0, position.size - 1):
         steps = np.abs(np.diff(position[first : last + 1]))

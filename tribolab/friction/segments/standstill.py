@@ -23,7 +23,7 @@ _BLOCK_COUNTS = (32, 16, 8)
 
 
 def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list[Stretch], float]:
-    """Return the intervals with standstills marked as rest, and their duration [s].
+    """Return the intervals, with standstills marked as rest, and the total standstill time [s].
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from tribolab.friction.zero.parts import Doubt, ZeroReference
 from tribolab.friction.zero.without_sliding import stretches_of
 from tribolab.friction.zero.words import of_leak, of_retained_load
 
-# half width over standard deviation of a uniform distribution
+# half width of a uniform distribution divided by its standard deviation
 WIDTH_OVER_SIGMA = np.sqrt(3)
 _NEAREST_RESTS = 4  # nearest rests that are compared with a segment
 # number of blocks of readings; slow waves and ramps also contribute to the scatter of their means

@@ -203,7 +203,7 @@ def _decide_two_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
 
 
 def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
-    """Return the shares of turns that dip, go below, or are (clearly) straight, and their number.
+    """Return shares of turns (dip, below, straight, clearly straight), and the number of turns.
 
     "Dip" and "below" are readings far below both levels. A turn is "straight" if it has readings
     between the two levels, beyond their noise, and none below them; if the levels overlap, at least
@@ -232,7 +232,7 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
         ):
             below += 1
         elif top < bottom:
-            # between the levels, farther from both than the noise of so many readings reaches
+            # readings between the levels, too far from either to be noise of that level
             far = _noise_quantile(turn.size) / _PERCENTILE_WIDTH
             above = (low + top) / 2 + far * (top - low)
             beneath = (bottom + highest) / 2 - far * (highest - bottom)

@@ -249,7 +249,7 @@ def _compare(
 def _doubt_asymmetry(
     strokes: StrokeMeans, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
-    """Return a doubt if the offset cannot be told from friction that depends on direction."""
+    """Return the zero with a doubt: the offset may be friction that depends on direction."""
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     offset, usual = median_of_known(loops.value), median_of_known(np.abs(half))
     share = float(abs(offset) / usual) if usual > 0 and np.isfinite(offset) else 0.0

@@ -71,7 +71,7 @@ class Zeros(NamedTuple):
 
 
 class PartialContact(NamedTuple):
-    """Number of rests with more load than the unloaded one, excess [N], time of the first [s]."""
+    """Number of rests in partial contact, their mean excess load [N], time of the first [s]."""
 
     rests: int
     level: float
@@ -140,7 +140,7 @@ def _without_partial(
     run: xr.Dataset,
     segments: xr.Dataset,
 ) -> tuple[list[np.ndarray], PartialContact | None]:
-    """Separate rests whose load exceeds the lowest one by more than drift from the others."""
+    """Return the unloaded rests, and the excess load of other rests unless a drift explains it."""
     if len(levels) < 2:
         return levels, None
     reads = np.array([float(np.mean(normal[level])) for level in levels])
@@ -224,7 +224,7 @@ def _rest_limits(
 
 
 def _limits(segments: xr.Dataset, reason: str = "") -> list[tuple[float, float]]:
-    """Return start and end times of the intervals omitted for a given reason, or for any."""
+    """Return start and end times of the intervals omitted for a reason; of all without a reason."""
     reasons = segments["omitted_reason"].values
     chosen = reasons == reason if reason else np.ones(reasons.size, bool)
     starts, stops = (segments[name].values[chosen] for name in ("omitted_start", "omitted_stop"))

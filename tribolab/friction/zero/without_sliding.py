@@ -81,7 +81,7 @@ def _before_sliding(
 def _without_load(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None, load: float
 ) -> tuple[float, float]:
-    """Return half the loop of unloaded strokes; with one direction, their excess over rests."""
+    """Return half the loop of unloaded strokes; if one way only, their force minus that at rest."""
     if "sliding_velocity" not in run:
         return float("nan"), float("nan")
     found: list[tuple[float, float, float, float]] = []  # direction, mean, its error, mean time

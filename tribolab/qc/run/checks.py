@@ -158,7 +158,7 @@ def _objections(flags: np.ndarray) -> np.ndarray:
 
 
 def _flag_unexamined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
-    """Return the results, with an objection if no check other than "segments" could examine."""
+    """Return the results, with an objection if every check except "segments" was skipped."""
     others = [result for name, rows in results.items() if name != _SEGMENTS for result in rows]
     own = results.get(_SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):

@@ -129,7 +129,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
 
 
 def _unsigned_speed(subject: RunSubject) -> bool:
-    """Return whether the velocity is never negative, as measured by a tachometer."""
+    """Return whether a recorded velocity is never negative, as from a tachometer."""
     velocity = subject.signals.get("sliding_velocity")
     return velocity is not None and not (velocity < 0).any()
 

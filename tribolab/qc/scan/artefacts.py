@@ -18,7 +18,7 @@ _STUCK_BLOCKS = 50  # number of blocks of a profile in which a stuck stylus is s
 _MIN_IN_BLOCK = 16
 # half widths of the band of heights at a noisy stop, relative to the roughness of the blocks
 _BANDS = 0.02 * np.sqrt(2.0) ** np.arange(11)
-_PILE_RATIO = 4.0  # points in the outermost band over those in the next one; 1.4 for rough summits
+_PILE_RATIO = 4.0  # points in the outermost band / those in the next one; 1.4 for rough summits
 _TRIM = 20  # up to this many points beyond the end of the range may be outliers
 
 

@@ -143,7 +143,7 @@ def flag_clipping(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> n
 def pool_bands(
     logs: np.ndarray, weights: np.ndarray, fewest: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pool spectral bands until each has enough independent values; return them and the numbers.
+    """Pool spectral bands until each has enough independent values; return means and value counts.
 
     Parameters
     ----------

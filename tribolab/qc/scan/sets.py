@@ -104,7 +104,7 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
 def _repeats(
     scans: list[xr.Dataset], numbers: list[int], limits: CheckLimits | None, skip: Sequence[str]
 ) -> dict[int, Result]:
-    """Return the result of comparing each scan with the others, by number of the scan."""
+    """Return the result of comparing each scan with the others, as a dictionary by scan number."""
     rows = [np.asarray(scan.height.transpose(..., "x").values, dtype=float) for scan in scans]
     names = [str(scan.attrs.get("source", f"scan {n + 1}")) for n, scan in enumerate(scans)]
     first = scans[0]

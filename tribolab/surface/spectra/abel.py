@@ -169,7 +169,7 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
 
 def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
-    """Return each bin's share of the variance M(q), that of the plateau in the first (at, bin)."""
+    """Return each bin's share of the variance M(q); the first includes the plateau's (at, bin)."""
     left = np.concatenate([[0.0], profile.edges[:-1]])
     right, level = profile.edges, np.append(profile.level[:1], profile.level)
     slope = np.append(0.0, profile.slope)
@@ -193,7 +193,7 @@ def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
 def _tail(
     end: float, level: float, exponent: float, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the share of the extrapolated tail in M(q), and its derivative by the exponent."""
+    """Return the tail's share of M(q), and the share's derivative with respect to the exponent."""
 
     def mean_square(s: float) -> np.ndarray:
         # imported late: scipy loads slowly

@@ -100,7 +100,7 @@ def correlation(shift: float, flanks: float = 1.0) -> float:
 def shape(
     bins: Bins, slope: np.ndarray, spacing: float, flanks: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return bin mean / node value of a power law, and the number of independent values.
+    """Return bin mean / node value for a power law, and the number of independent values (bin).
 
     Parameters
     ----------

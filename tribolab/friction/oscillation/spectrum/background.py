@@ -83,7 +83,7 @@ def _quantile(values: np.ndarray, share: float) -> np.ndarray:
 
 
 def false_alarm(power: np.ndarray, background: np.ndarray, freedom: np.ndarray) -> np.ndarray:
-    """Return the probability that noise makes any of the bands as strong as each one (band).
+    """Return the probability that noise alone makes at least one band as strong as this one (band).
 
     Parameters
     ----------

@@ -109,7 +109,7 @@ def _survey(
 def above_lower(
     fine: Spectrum, middle: np.ndarray, power: np.ndarray, freedom: np.ndarray
 ) -> np.ndarray:
-    """Return the probability that chance lifts a band so far above slower ones (band).
+    """Return the probability that chance lifts a band so far above bands of lower frequency (band).
 
     Parameters
     ----------
