@@ -1,4 +1,4 @@
-"""Increase of the contact area by adhesion, tabulated over pressure."""
+"""Increase of the contact area by adhesion, tabulated against pressure."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _POINTS = 21  # number of pressures in the table
 
 
 class AdhesiveGrowth(NamedTuple):
-    """Ratio of the contact areas with and without adhesion, tabulated over pressure.
+    """Ratio of the contact areas with and without adhesion, tabulated against pressure.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Contact area of a rough surface over reduced pressure, in three theories.
+"""Contact area of a rough surface against reduced pressure, in three theories.
 
 In Persson's theory the stress diffuses as in complete contact. In partial contact a wave stores
 only a share S(P) of that elastic energy, and the variance of the stress grows more slowly: dV/dV_c
@@ -72,7 +72,7 @@ def alternative_area_theory(area: AreaTheory) -> AreaTheory:
 
 @functools.cache
 def _table(area: AreaTheory) -> tuple[PchipInterpolator, float]:
-    """Return ln z over ln y, and the lowest ln y; above y = 6 contact is complete and z = y."""
+    """Return ln z against ln y, and the lowest ln y; above y = 6 contact is complete and z = y."""
     nodes = np.linspace(np.log(_FIRST), np.log(_LAST), _NODES)
     t, weight = np.polynomial.legendre.leggauss(6)
     half = (nodes[0] - nodes[1]) / 2

@@ -273,7 +273,7 @@ def tail_slope(y: np.ndarray, gamma: float) -> np.ndarray:
 
 @functools.lru_cache(maxsize=8)
 def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
-    """Return a spline of ln F over ln y with exact slopes, and its lowest and highest ln y."""
+    """Return a spline of ln F against ln y with exact slopes, and its lowest and highest ln y."""
     if not 0 < gamma <= 1:
         raise AnalysisError(f"gamma: a value above 0 and at most 1 is wanted; got {gamma:g}")
     x = np.linspace(-12.0, np.log(26.0), 1601)
