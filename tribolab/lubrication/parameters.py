@@ -170,7 +170,7 @@ class Solver:
     friction_factors
         False sets phi_f = phi_fp = 1 and phi_fs = 0 in the friction, but not in the flow.
     method
-        For a ball: ``"full"`` theory on rings and sectors, ``"strips"`` (reduced, within some 6 %
+        For a ball: ``"full"`` theory on rings and sectors, ``"strips"`` (reduced, within 8 %
         for films thinner than 0.025 a^2/R), or ``"auto"``: strips within that limit and the full
         theory beyond, as in fits and bands.
 

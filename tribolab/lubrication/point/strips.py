@@ -1,4 +1,4 @@
-"""Strip approximation of a ball: line contacts along the sliding direction, within 6 %."""
+"""Strip approximation of a ball: line contacts along the sliding direction."""
 
 from __future__ import annotations
 
