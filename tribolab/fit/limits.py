@@ -18,8 +18,9 @@ STRONG_LN_ODDS = Limit(
     "Kass and Raftery 1995, doi:10.1080/01621459.1995.10476572",
 )  # fmt: skip
 PRIOR_FREEDOM_OF_SCATTER = Limit(
-    4.0, "1", "degrees of freedom of the pooled scatter in that of one speed", _JOINT
-)
+    4.0, "1", "degrees of freedom with which the pooled scatter enters the scatter at one speed",
+    _JOINT,
+)  # fmt: skip
 MIN_POINTS_OF_LOAD = Count(
     4, "1", "points of positive friction in a joint fit, and points whose scatter is pooled"
 )
@@ -58,5 +59,6 @@ MIN_ERROR_OF_HURST = Limit(
     "law",
 )  # fmt: skip
 MAX_CELLS_OF_CHANGE = Count(
-    100, "1", "cells of the mesh for the change of a curve: the error of the mesh cancels"
-)
+    100, "1", "cells of the mesh if only the change of a curve is computed: the mesh error "
+    "cancels",
+)  # fmt: skip

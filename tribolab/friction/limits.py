@@ -5,18 +5,14 @@ from __future__ import annotations
 from tribolab.core.limit import Count, Limit
 
 MAX_UNEVEN = Limit(
-    0.01,
-    "1",
-    "share of the duration by which rows run ahead of even rows: the plain mean is then off by at "
-    "most two per cent of what the signal changes by",
+    0.01, "1", "largest deviation of the row times from even spacing, as a share of the "
+    "duration: the plain mean is then off by at most two per cent of the change of the signal",
     "|mean by rows - mean by time| <= D x total variation (Koksma's inequality)",
-)
+)  # fmt: skip
 MIN_GAP = Limit(
-    5.0,
-    "1",
-    "intervals of the rows around it, from which an interval is a gap that nothing was recorded in",
-    "late buffers cause gaps of 2 to 3 intervals",
-)
+    5.0, "1", "an interval that is longer than those around it by this factor is a gap in the "
+    "record", "late buffers cause gaps of 2 to 3 intervals",
+)  # fmt: skip
 MIN_BLOCKS = Count(12, "1", "blocks of the greatest length: their scatter is known within a fifth")
 MIN_SPEED_OF_MASS = Limit(
     0.4, "1", "share of the highest speed below which friction still reverses"

@@ -3,6 +3,6 @@
 from tribolab.core.limit import Limit
 
 MAX_VISCOUS_HEATING = Limit(
-    2.0, "K", "temperature rise of a liquid by its own shear: a sixth of glycerol's viscosity",
-    "Cheng (2008), doi:10.1021/ie071349z",
+    2.0, "K", "temperature rise of a liquid by its own shear, which lowers glycerol's viscosity "
+    "by a sixth", "Cheng (2008), doi:10.1021/ie071349z",
 )  # fmt: skip

@@ -3,11 +3,9 @@
 from tribolab.core.limit import Limit
 
 MIN_INDEPENDENT_VALUES = Limit(
-    1e-3,
-    "1",
-    "a spectral value with fewer is known to within thirty powers of ten: a wider band is no band",
-    "judgement",
-)
+    1e-3, "1", "with fewer values, a spectral value is uncertain by thirty decades, so that no "
+    "band is given", "judgement",
+)  # fmt: skip
 MIN_WAVES_OF_MAP = Limit(
     4.0,
     "1",
@@ -15,19 +13,14 @@ MIN_WAVES_OF_MAP = Limit(
     "judgement",
 )
 MIN_HURST = Limit(
-    0.0,
-    "1",
-    "below it the waves beyond the measured ones hold more height than these, without end",
+    0.0, "1", "below it, the extrapolated waves would contribute unbounded height",
     "self-affine surfaces have 0 to 1, doi:10.1016/j.apsadv.2021.100190",
-)
+)  # fmt: skip
 MAX_SURE_HURST = Limit(
-    1.25,
-    "1",
-    "exponent that a surface may exceed within the error of the fit alone; worn, polished and "
-    "moulded surfaces fall faster than a self-affine one (1.09 to 1.19 in the study xu2026), and "
-    "add little slope where they are led on",
-    "judgement",
-)
+    1.25, "1", "exponent that a surface may exceed only within the error of the fit; worn, "
+    "polished and moulded surfaces have steeper spectra than a self-affine one (1.09 to 1.19 in "
+    "the study xu2026), and add little slope where they are extrapolated", "judgement",
+)  # fmt: skip
 MAX_FITTED_HURST = Limit(
     2.0, "1", "fits of tips and filters reach 1.5; a steeper one is not believed", "judgement"
 )

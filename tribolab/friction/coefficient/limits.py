@@ -12,7 +12,9 @@ MAX_MISFIT_OF_PEAK = Limit(
     2.0, "1", "standard deviations of the scatter about a parabola, above which a narrower part "
     "is fitted",
 )  # fmt: skip
-MAX_TIME_BEFORE_SEGMENT = Limit(0.5, "1", "share of the stroke before, in which a rise may begin")
+MAX_TIME_BEFORE_SEGMENT = Limit(
+    0.5, "1", "share of the preceding stroke in which a rise may already begin",
+)  # fmt: skip
 MAX_TIME_OF_RISE = Limit(
     0.5, "1", "share of the segment in which the static friction is looked for"
 )

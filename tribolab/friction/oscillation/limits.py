@@ -14,8 +14,8 @@ MIN_VARIANCE_OF_LINE = Limit(
     0.03, "1", "variance of a listed line over that of the strongest one", _TABLE
 )
 MAX_POWER_OF_HARMONIC = Limit(
-    1.3, "1", "power at a multiple of a frequency over that of a sawtooth's harmonic, up to which "
-    "it is a harmonic", _TABLE,
+    1.3, "1", "ratio of the power at a multiple of a frequency to that of a sawtooth's harmonic, "
+    "up to which it counts as a harmonic", _TABLE,
 )  # fmt: skip
 WIDTH_OF_LINE = Limit(0.04, "1", "relative width of a line", _TABLE)
 MIN_POWER_IN_LINES = Limit(
@@ -56,8 +56,8 @@ MIN_VARIANCE_OF_SLOW_WAVE = Limit(
     _TABLE,
 )  # fmt: skip
 MISFIT_OF_SLOW_WAVE = Limit(
-    1.2, "1", "misfit of a wave over that of the best one, up to which the faster of both counts: "
-    "a wave fits with half its frequency, too", _TABLE,
+    1.2, "1", "ratio of the misfits of a wave and of the best one, up to which the faster of "
+    "both is used: a wave also fits at half its frequency", _TABLE,
 )  # fmt: skip
 MIN_VARIANCE_OF_SLOW_SINE = Limit(
     0.1, "1", "share of the variance of a slow sine that may hide a faster oscillation", _TABLE
@@ -77,8 +77,8 @@ BREADTH_OF_IRREGULAR_WAVE = Limit(
     0.4, "1", "standard deviation of ln frequency in the spectrum of an irregular wave", _TABLE
 )
 MAX_DISTANCE_FROM_DROPS = Limit(
-    0.2, "1", "relative difference between a spectral line and the frequency of the drops that it "
-    "is looked for near", _TABLE,
+    0.2, "1", "largest relative difference between the frequency of the drops and the spectral "
+    "line that is looked for near it", _TABLE,
 )  # fmt: skip
 MAX_SCATTER_OF_SURE_PERIODS = Limit(
     0.12, "1", "scatter of periods above which cycles may have been missed or split", _TABLE
@@ -116,8 +116,8 @@ MIN_CYCLES_PER_SLOW_WAVE = Limit(
 )
 MIN_PERIODS_FOR_SCATTER = Count(4, "1", "periods whose scatter is meaningful", _TABLE)
 MIN_ASYMMETRY = Limit(
-    0.15, "1", "difference from one half of the falling share of a cycle, from which it is not a "
-    "sine", _TABLE,
+    0.15, "1", "difference of the falling share of a cycle from 0.5, above which the wave is not "
+    "a sine", _TABLE,
 )  # fmt: skip
 ASYMMETRY_BY_CHANCE = Limit(
     0.01, "1", "chance of such an asymmetry in the sign test over the cycles", _TABLE
@@ -183,8 +183,8 @@ MIN_SPEED_RATIO_OF_RESONANCE = Limit(
     2.0, "1", "ratio of speeds over which the frequency of a resonance stays"
 )
 MAX_EXCESS_OF_BAND = Limit(
-    0.7, "1", "ln of a band's power over the model of the background, above which it counts as "
-    "much as this: lines do not raise the background", _TABLE,
+    0.7, "1", "ln of the ratio of a band's power to the model of the background; larger values "
+    "are clipped to this, so that lines do not raise the background", _TABLE,
 )  # fmt: skip
 MIN_SAMPLES_OF_SPECTRUM = Count(
     256, "1", "samples of a segment in which lines of the rig are looked for"
@@ -207,8 +207,8 @@ BANDS_PER_DECADE = Count(
     24, "1", "bands of the spectrum per decade: a tenth wide, as lines of stick-slip are"
 )
 RISE_BY_CHANCE = Limit(
-    1e-2, "1", "chance that a band of a spectrum without a peak exceeds its slower neighbours so "
-    "far", _TABLE,
+    1e-2, "1", "chance that a band of a spectrum without a peak exceeds the bands at lower "
+    "frequencies by as much", _TABLE,
 )  # fmt: skip
 MIN_PEAK_OVER_BACKGROUND = Limit(
     1.5, "1", "power of a peak over its background: the model of the background is no better",
@@ -227,11 +227,12 @@ MIN_CYCLES_OF_STIFFNESS = Limit(
     8.0, "1", "cycles from which the mean drop and its distance are known to 5 %"
 )
 ERROR_OF_CREEP = Limit(
-    0.05, "1", "error of the creep share: a mean drop is known to some 5 % at a third of noise"
-)
+    0.05, "1", "error of the creep share: a mean drop is known to some 5 %",
+)  # fmt: skip
 MIN_RISE_BY_MASS = Limit(
-    0.05, "1", "rise of the critical stiffness by the mass that is reported: the error of creep"
-)
+    0.05, "1", "smallest increase of the critical stiffness by the mass that is reported; equal "
+    "to the error of the creep share",
+)  # fmt: skip
 MIN_SLOPE_OVER_STIFFNESS = Limit(
     1.1, "1", "slope of the force in a stick over the rig's stiffness that contradicts it: the "
     "slope is known to some 3 %",

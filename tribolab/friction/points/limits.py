@@ -10,19 +10,27 @@ SPEED_TOLERANCE = Limit(
     0.1, "1", "largest relative difference of the speeds of one point", "judgement"
 )
 SPEED_FLOOR = Limit(
-    5e-3, "1", "relative difference of speed that a drive and its record make", _GROUPS
+    5e-3, "1", "relative difference of speed due to drive and recording alone", _GROUPS,
 )  # fmt: skip
 CLEAR_JUMP = Limit(
-    2.0, "1", "gaps between groups over those within, from which groups are clear", _GROUPS
+    2.0, "1", "ratio of the gaps between groups to those within them, above which the groups are "
+    "distinct", _GROUPS,
 )  # fmt: skip
 FAIR_JUMP = Limit(1.4, "1", "the same ratio, below which the groups are not told apart", _GROUPS)
 NARROW_GAP = Limit(
-    0.5, "1", "gap over the width of the wider group: a narrower one parts nothing", _GROUPS
+    0.5, "1", "ratio of a gap to the width of the wider group; a narrower gap does not separate "
+    "groups", _GROUPS,
 )  # fmt: skip
-NARROW_GAPS = Limit(0.02, "1", "share of such gaps that is accepted", _GROUPS)
-SWEEP_STEPS = Limit(5.0, "1", "steps of a run whose speed goes one way: none repeats", "judgement")
+NARROW_GAPS = Limit(
+    0.02, "1", "largest accepted share of narrow gaps", _GROUPS,
+)  # fmt: skip
+SWEEP_STEPS = Limit(
+    5.0, "1", "least steps of a run whose speed only rises or only falls, so that no speed "
+    "repeats", "judgement",
+)  # fmt: skip
 UNEQUAL_ERRORS = Limit(
-    5.0, "1", "largest over smallest error up to which the plain mean is better", _MEANS
+    5.0, "1", "ratio of the largest to the smallest error, up to which the plain mean is better",
+    _MEANS,
 )  # fmt: skip
 POOLED_DOF = Limit(
     4.0, "1", "degrees of freedom from which on the scatter at other speeds is of use", _MEANS

@@ -14,11 +14,16 @@ NOT_FINISHED = Limit(
 )
 LATEST_START = Limit(0.8, "1", "share of the run after which a steady value has too few values")
 STEP_OVER_NOISE = Limit(6.5, "1", "standard errors of a step", _TABLE)
-STEP_OVER_EXPONENTIAL = Limit(1.06, "1", "squares that a step must save over a running-in", _TABLE)
-LINE_OVER_EXPONENTIAL = Limit(0.98, "1", "squares of a line that count like an exponential", _TABLE)
+STEP_OVER_EXPONENTIAL = Limit(
+    1.06, "1", "factor by which the residual squares of a step must be below those of a "
+    "running-in", _TABLE,
+)  # fmt: skip
+LINE_OVER_EXPONENTIAL = Limit(
+    0.98, "1", "factor on the residual squares of a line, compared with an exponential", _TABLE,
+)  # fmt: skip
 SHORT_TIME = Limit(
-    0.15, "1", "time constant over the run below which the noise at its own frequencies counts",
-    _TABLE,
+    0.15, "1", "time constant divided by the duration of the run, below which noise is estimated "
+    "at the frequencies of the change", _TABLE,
 )  # fmt: skip
 LONGEST_CHANGE_AT_END = Limit(
     1 / 3, "1", "share of a run that a change at its end may take: else the end is the steady part"

@@ -29,13 +29,12 @@ MAX_ERROR_OF_BLOCK = Limit(
     0.1, "1", "standard error of a block's speed over the speed: five of them are half of the speed"
 )
 MIN_DIGITS_OF_BLOCK = Limit(
-    5.0,
-    "1",
-    "digits of the position in a block's way; the slope of two or three digits is arbitrary",
-)
+    5.0, "1", "steps of the position's last digit within a block; the slope of two or three "
+    "steps is arbitrary",
+)  # fmt: skip
 MIN_GRADUAL_END = Limit(
-    0.3, "1", "share of a plateau's length over which its speed changes gradually at an end: a "
-    "plateau is left faster", _TRICKY,
+    0.3, "1", "share of a plateau's length over which its speed changes gradually at an end: the "
+    "end of a true plateau is more abrupt", _TRICKY,
 )  # fmt: skip
 MAX_DRIFTS_FROM_PLATEAU = Limit(
     2.5, "1", "allowed drifts by which the speed next to a plateau differs, if it changes "
@@ -54,8 +53,8 @@ MIN_GAIN_OF_CUBIC = Limit(
 )  # fmt: skip
 MIN_BINS_OF_CURVATURE = Count(6, "1", "bins in a fit of curvature", _TRICKY)
 MIN_SAMPLES_OF_MIDDLE = Count(
-    5, "1", "samples in the middle of a crank's stroke: many short strokes are as good as a long "
-    "one",
+    5, "1", "samples in the middle of a crank's stroke; few are enough, as many strokes are "
+    "averaged",
 )  # fmt: skip
 MIDDLE_OF_CRANK_STROKE = Limit(
     0.5, "1", "share of each stroke of a crank that is averaged: its speed changes there by an "
@@ -69,18 +68,19 @@ MIN_REST_SPEED_OVER_NOISE = Limit(
     "scatters less than a sample", _TRICKY,
 )  # fmt: skip
 MIN_ERRORS_OF_RAMP = Limit(
-    3.0, "1", "standard errors of the change of speed that makes a piece a ramp", _TRICKY
-)
-MIN_CHANGE_AT_REST = Limit(
-    2.0, "1", "rest speeds by which the speed of a piece at rest surely changes: it is a ramp",
+    3.0, "1", "standard errors by which the speed of a piece must change for it to be a ramp",
     _TRICKY,
+)  # fmt: skip
+MIN_CHANGE_AT_REST = Limit(
+    2.0, "1", "change of speed of a piece at rest, in multiples of the rest speed, above which "
+    "it is a ramp", _TRICKY,
 )  # fmt: skip
 MAX_ERRORS_OF_EQUAL_SPEED = Limit(
     3.0, "1", "standard errors between the speeds of two pieces that are joined", _TRICKY
 )
 MAX_DIFFERENCE_OF_EQUAL_SPEED = Limit(
-    0.5, "1", "resolutions between the speeds of two pieces that are joined: those that breaks "
-    "separate differ by one", _TRICKY,
+    0.5, "1", "difference between the speeds of two pieces that are joined, in resolutions: "
+    "pieces that a break separates differ by at least one", _TRICKY,
 )  # fmt: skip
 MIN_PLATEAUS_OVER_BUMP = Limit(
     20.0, "1", "length of two plateaus over that of the disturbance between them that is bridged",
@@ -91,15 +91,16 @@ MAX_RESOLUTIONS_ACROSS_BUMP = Limit(
     _TRICKY,
 )  # fmt: skip
 MIN_ERRORS_OF_UNPROVEN = Limit(
-    3.0, "1", "standard errors of a change of speed (sqrt(12) errors of the mean) that must lie "
-    "within the allowed drift, if a plateau is short", _TRICKY,
+    3.0, "1", "standard errors of the change of speed that must fit into the allowed drift; "
+    "otherwise a short plateau becomes a ramp", _TRICKY,
 )  # fmt: skip
 MIN_NEIGHBOUR_OVER_SHORT = Limit(
     4.0, "1", "length of a neighbouring piece over that of one that is short next to it", _TRICKY
 )
 MIN_RAMP_OVER_SPECK = Limit(
-    10.0, "1", "length of a ramp over that of a plateau next to it that is part of it", _TRICKY
-)
+    10.0, "1", "ratio of the lengths of a ramp and an adjacent plateau, above which the plateau "
+    "belongs to the ramp", _TRICKY,
+)  # fmt: skip
 MAX_DRIFTS_OF_TRANSIENT = Limit(
     2.0, "1", "allowed drifts between the speeds of a transient and of the plateau it leads to",
     _TRICKY,
@@ -175,8 +176,8 @@ MIN_RAMP_OVER_PAUSE = Limit(
     3.0, "1", "duration of a ramp over that of a pause in it, above which it is one ramp"
 )
 MIN_ERRORS_FROM_REST = Limit(
-    8.0, "1", "standard errors between a piece's speed and rest: pieces are selected by breaks, "
-    "so that chance alone makes six", _TRICKY,
+    8.0, "1", "standard errors between a piece's speed and rest: as breaks select the pieces, "
+    "chance alone reaches six", _TRICKY,
 )  # fmt: skip
 MIN_ERRORS_OF_BREAK = Limit(
     6.0, "1", "standard errors between neighbouring windows that make a break", _TRICKY
@@ -278,8 +279,9 @@ MAX_SPEED_DIFFERENCE_OF_PLATEAU = Limit(
     0.1, "1", "share of a stroke's speed by which a plateau within it may differ", _STROKES
 )
 MIN_COVERED_STROKE = Limit(
-    0.6, "1", "share of a stroke that plateaus cover, if they have found it", _STROKES
-)
+    0.6, "1", "share of a stroke that plateaus must cover for the stroke to count as found",
+    _STROKES,
+)  # fmt: skip
 MIN_STROKE_OVER_NOISE = Limit(
     20.0, "1", "length of a stroke over the noise of a position reading", _STROKES
 )

@@ -20,8 +20,9 @@ UNLOADED_SHARE = Limit(
     "data sheets of strain-gauge cells: 0.02 to 0.3 %",
 )  # fmt: skip
 DOUBTFUL_REST = Limit(
-    0.01, "1", "share of the load by which a rest reads more than the unloaded one, from which on "
-    "the run is doubted: below it the error of the load holds both readings", "judgement",
+    0.01, "1", "difference between the readings of a rest and of the unloaded rest, divided by "
+    "the load, above which the run is doubted: a smaller one is within the error of the load",
+    "judgement",
 )  # fmt: skip
 DRIFT_IN_STROKES = Limit(
     0.5, "1", "share of the scatter of the strokes' load that may remain once the readings at rest "
@@ -31,10 +32,12 @@ LOADED_REST_SHARE = Limit(
     0.02, "1", "share of friction by which a loaded rest before any sliding may differ from an "
     "unloaded one; more is a tilt or the cross-talk of the load",
 )  # fmt: skip
-DRAG_SHARE = Limit(0.02, "1", "share of friction that drag without load may have unreported")
+DRAG_SHARE = Limit(
+    0.02, "1", "drag without load divided by friction, above which it is reported",
+)  # fmt: skip
 NOISE_PASSES = Limit(
-    0.1, "1", "chance that the noise of all readings at a turn passes for one on its way from one "
-    "level to the other",
+    0.1, "1", "chance that noise at a turn is mistaken for readings during the transition "
+    "between the levels",
 )  # fmt: skip
 LOAD_AT_REST = Limit(
     0.03, "1", "share of the load by which the reading may change between rest and sliding: above "
@@ -60,11 +63,12 @@ MAX_SPEED_DIFFERENCE_OF_PAIR = Limit(
     0.25, "1", "relative difference of speed up to which two strokes make a pair"
 )
 MIN_ERRORS_OF_LEVEL = Limit(
-    5.0, "1", "standard errors of a level from zero, or from another level, that differ", _TRICKY
-)
+    5.0, "1", "standard errors by which a level must differ from zero, or from another level",
+    _TRICKY,
+)  # fmt: skip
 MAX_MIDDLE_OF_SIGNED_LOOP = Limit(
-    0.3, "1", "middle of a loop over half of it, below which the force has its sign", _TRICKY
-)
+    0.3, "1", "ratio of the offset to the half loop, below which the force has its sign", _TRICKY,
+)  # fmt: skip
 MIN_LEVEL_RATIO_OF_LOST_SIGN = Limit(
     0.5, "1", "smaller over larger level of two strokes whose sign was lost", _TRICKY
 )
@@ -79,15 +83,17 @@ MAX_ERRORS_OF_TOUCH = Limit(
     5.0, "1", "standard deviations from zero within which the force touches it", _TRICKY
 )
 MIN_DEPTH_OF_DIP = Limit(
-    1.0, "1", "depth below the lower stroke, in its scatter, of a reading on its way through zero",
-    _TRICKY,
+    1.0, "1", "depth of a reading below the lower stroke, in standard deviations of the stroke, "
+    "from which it is on its way through zero", _TRICKY,
 )  # fmt: skip
 MAX_READINGS_OF_DIP = Count(
-    3, "1", "readings so deep; with more of them, one would have been close to zero", _TRICKY
-)
+    3, "1", "readings at such a depth; with more of them, one would have been close to zero",
+    _TRICKY,
+)  # fmt: skip
 MIN_READINGS_BETWEEN_LEVELS = Count(
-    3, "1", "readings between two levels that noise does not make at most reversals", _TRICKY
-)
+    3, "1", "readings between two levels; noise does not cause so many at the majority of the "
+    "reversals", _TRICKY,
+)  # fmt: skip
 MAX_REVERSALS_WITH_SPIKE = Limit(
     0.1, "1", "share of reversals at which a spike or a slip is below both levels", _TRICKY
 )

@@ -5,15 +5,16 @@ from __future__ import annotations
 from tribolab.core.limit import Limit
 
 AGREEMENT = Limit(
-    0.01,
-    "1",
-    "columns that a rule of physics joins agree to within the digits they are written with",
+    0.01, "1", "relative difference between columns that a rule of physics relates: they agree "
+    "to the digits with which they are written",
     "te67_pin_on_disc_MIT: speed = rotation x radius to 0.4 % over 1800 rows",
-)
+)  # fmt: skip
 SPREAD = Limit(
     0.05,
     "1",
     "the ratio that a rule makes is constant over the rows, from the 10th to the 90th percentile",
     "te67_pin_on_disc_MIT: 0.9 % for its distance, which is written in whole turns",
 )
-ROWS = Limit(10, "rows", "so many rows that are not zero tell a ratio", "judgement")
+ROWS = Limit(
+    10, "rows", "fewest non-zero rows from which a ratio is determined", "judgement",
+)  # fmt: skip
