@@ -28,7 +28,7 @@ def means(meaning: str) -> FieldInfo:
 
 @dataclass(frozen=True, eq=False)  # annotations must be hashable
 class Columns:
-    """Columns of the rows of a table: numbers or null by default.
+    """Types of the columns of a table; by default a number or null.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class SlidingMode:
 
     @property
     def entries(self) -> list[tuple[str, str]]:
-        """Pieces of evidence with their sides, and the measurements that would decide."""
+        """Pieces of evidence with the mode that each supports, and the measurements that decide."""
         pieces = [(piece.side, piece.text) for piece in self.evidence]
         return [*pieces, *(("would decide", text) for text in self.decide)]
 

@@ -244,7 +244,7 @@ def _failure(run: RunOutcome) -> Notice:
 def shown_curves(
     curves: Sequence[CurveRecord], quantities: Mapping[str, str | None]
 ) -> tuple[list[CurveRecord], list[Notice]]:
-    """Return the curves with a friction coefficient, and a notice on each other curve."""
+    """Return the curves with a friction coefficient, and a notice for every curve without one."""
     shown, missing = [], []
     for curve in curves:
         outcome, reason = curve.outcome, curve.outcome.reason

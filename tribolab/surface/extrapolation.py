@@ -164,7 +164,7 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
-    rough = _is_surface_law(law)  # otherwise the power law was not used
+    rough = _is_surface_law(law)  # whether the fitted power law was used
     attrs = {
         **kept,
         "hurst_exponent": law.hurst if rough else float("nan"),

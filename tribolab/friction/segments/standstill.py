@@ -1,4 +1,4 @@
-"""Standstills of the slider by its position, while the recorded velocity is not zero."""
+"""Standstills that the position shows although the recorded velocity is not zero."""
 
 from __future__ import annotations
 

@@ -166,7 +166,7 @@ def _with_slope(time: np.ndarray, position: np.ndarray, piece: VelocityPiece) ->
 def _mark_dwells(
     time: np.ndarray, pieces: list[VelocityPiece], noise: float
 ) -> list[VelocityPiece]:
-    """Reclassify plateaus that cover no more than the position noise as rest: dwells at turns."""
+    """Reclassify as rest those plateaus (dwells at turns) that do not exceed the position noise."""
     return [
         piece._replace(kind="at rest")
         if piece.kind == "constant"

@@ -155,8 +155,8 @@ def folded(trace: ForceTrace) -> Fold:
         return SIGNED
     turned = 1.0 if median_of_known(trace.mean) >= 0 else -1.0
     trace = trace._replace(turned=turned, mean=turned * trace.mean, rest=turned * trace.rest)
-    # a negative stroke (in its mean beyond its error, or in all readings) shows that there is a
-    # sign
+    # a stroke whose mean is significantly negative, or whose readings all are, shows that the
+    # force has its sign
     if (trace.mean[known] < -3 * np.nan_to_num(trace.error[known])).any():
         return SIGNED
     if any(trace.is_below(trace.parts[i]) for i in one_by_one(np.flatnonzero(known))):

@@ -270,7 +270,7 @@ class Classes:
 
 
 def _explained(number: Array, total: Array) -> Array:
-    """Return the sum of squares explained by classes, from number and sum of samples (class)."""
+    """Return the sum of squares explained by classes, from count and sum of the samples in each."""
     full = number > 0
     between = np.where(full, total**2 / np.where(full, number, 1.0), 0.0).sum(axis=-1)
     whole = np.where(full.any(axis=-1), number.sum(axis=-1), 1.0)

@@ -49,7 +49,7 @@ class Faults(NamedTuple):
     missing: np.ndarray
 
     def offsets(self) -> np.ndarray:
-        """Return the offset to add to each row's time for a continuous clock [s] (time)."""
+        """Return the offsets [s] (time) that make the clock continuous if added to the times."""
         edges = [0, *(start.row for start in self.starts), self.astray.size]
         ahead = np.concatenate([[0.0], np.cumsum([start.ahead for start in self.starts])])
         result = room(self.astray.size)

@@ -85,7 +85,7 @@ def _effect(
 
 
 def _accepted_checks(decision: Mapping[str, Any], checks: Sequence[Mapping[str, Any]]) -> str:
-    """Return the checks against whose objection something was accepted, as text."""
+    """Return, as text, the failed checks that an acceptance overruled."""
     decided = [(row["check"], str(row.get("decision", ""))) for row in checks]
     by = f", {decision['author']}, "  # authors of this decision
     names = [

@@ -26,7 +26,7 @@ _HALF = 0.5
 
 
 def comparisons(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return a figure of all curves divided by their maximum, and one of the single repeats.
+    """Return a figure of all curves, each divided by its maximum, and one of each repeat alone.
 
     Absolute friction is on the card of each surface and medium.
     """

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def is_named(campaign: Campaign, patterns: Iterable[str], label: str) -> bool:
-    """Whether the label of a file matches one of the patterns in the raw folder."""
+    """Whether the label of a raw file matches one of the campaign's patterns for raw files."""
     raw = PurePosixPath(label_of(campaign, campaign.raw))
     path = PurePosixPath(label)
     if not path.is_relative_to(raw):

@@ -161,7 +161,7 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
 def _topography(
     path: Path, reader: Any, x_unit: str | None, height_unit: str | None
 ) -> tuple[Any, Any, float | None]:
-    """Return channel, topography and, if the channel has no unit, the unit of heights [m]."""
+    """Return channel and topography, and the unit of heights in m if the channel states none."""
     channel = reader.default_channel
     given: Arguments = {}
     if channel.physical_sizes is None:

@@ -127,7 +127,7 @@ def second_is_faster(
 
 
 def speed_symbol(column: DraftColumn, name: str) -> tuple[DraftColumn, str]:
-    """Return a speed column for a formula, and the expression of its speed in the formula.
+    """Return the speed column that a formula uses, and the term that stands for it there.
 
     Rotation in cycles is multiplied by 2 pi, as formulas need radians.
     """
