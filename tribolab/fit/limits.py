@@ -26,8 +26,8 @@ MIN_POINTS_OF_LOAD = Count(
 )
 MIN_SPEEDS_OF_RESPONSE = Count(5, "1", "computed speeds of a curve that is interpolated")
 MAX_SPACING_OF_RESPONSE = Limit(
-    1.0, "1", "spacing of computed points in ln(viscosity x speed); over wider gaps a spline may "
-    "be off by several percent",
+    1.0, "1", "largest spacing of computed points in ln(viscosity x speed); across wider gaps a "
+    "spline may be off by several percent",
 )  # fmt: skip
 MIN_REDUCTION_OF_PRIOR = Limit(
     0.2, "1", "reduction of the prior's standard deviation by the data, below which a parameter "

@@ -18,14 +18,14 @@ MIN_SPEED_OF_MASS = Limit(
     0.4, "1", "share of the highest speed below which friction still reverses"
 )
 MAX_EVEN_ACCELERATION = Limit(
-    0.3, "1", "median over highest acceleration, below which only ramps accelerate"
-)
+    0.3, "1", "ratio of the median to the highest acceleration, below which only ramps accelerate",
+)  # fmt: skip
 MIN_PAIRS_OF_STROKES = Count(4, "1", "pairs of strokes in a fit of the moving mass")
 MIN_SAMPLES_OF_PAIR = Count(24, "1", "samples of such a pair")
 MIN_ERRORS_OF_MASS = Limit(5.0, "1", "standard errors of a moving mass that is reported")
 MIN_FORCE_OF_MASS = Limit(
-    0.02, "1", "inertial force over the friction force; a smaller one is ignored"
-)
+    0.02, "1", "inertial force divided by the friction force; a smaller one is ignored",
+)  # fmt: skip
 MAX_NOISE_OF_ACCELERATION = Limit(
     0.05, "1", "share of the variance of the acceleration that is noise"
 )
@@ -34,7 +34,7 @@ MAX_ERROR_OF_SPEED = Limit(
     "judgement; checked by tests/coverage/run_out_coverage.py",
 )  # fmt: skip
 MIN_WAVE_OVER_SPECTRUM = Limit(
-    12.0, "1", "power of a wave over the spectrum next to it: chance e**-12",
+    12.0, "1", "ratio of a wave's power to the spectrum next to it, which has a chance of e**-12",
     "judgement; checked by tests/coverage/run_out_coverage.py",
 )  # fmt: skip
 MAX_RATIO_OF_PURE_ROLLING = Limit(

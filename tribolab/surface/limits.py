@@ -25,11 +25,9 @@ MAX_FITTED_HURST = Limit(
     2.0, "1", "fits of tips and filters reach 1.5; a steeper one is not believed", "judgement"
 )
 MIN_SHARE_OF_HEIGHT = Limit(
-    0.9,
-    "1",
-    "rms height of the measured waves over Pq; if more than a tenth is missing, it is stated",
-    "judgement",
-)
+    0.9, "1", "ratio of the rms height of the measured waves to Pq; if more than a tenth is "
+    "missing, it is stated", "judgement",
+)  # fmt: skip
 MAX_EXTRAPOLATED_SLOPE = Limit(
     1.0,
     "1",

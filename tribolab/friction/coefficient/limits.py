@@ -27,14 +27,17 @@ TREND_BY_CHANCE = Limit(
     "chance of a trend below which friction is not steady: runs have hundreds of segments",
 )
 SUSPECT_DRIFT = Limit(
-    0.05, "1", "change along a segment over the run's friction: above the usual scatter of repeats"
-)
+    0.05, "1", "change along a segment divided by the run's friction, above the usual scatter of "
+    "repeats",
+)  # fmt: skip
 FAILING_DRIFT = Limit(
-    0.50, "1", "change along a segment over the run's friction: the mean has no meaning"
-)
+    0.50, "1", "change along a segment divided by the run's friction, above which the mean has "
+    "no meaning",
+)  # fmt: skip
 MIN_EFFECTIVE_SAMPLES = Limit(
     10.0, "1", "with fewer effective samples, a trend cannot be distinguished from slow drift"
 )
 MIN_SEGMENTS_OF_STRICTER_TREND = Count(
-    20, "1", "segments from which the chance of a trend is lowered: many segments are tested"
-)
+    20, "1", "number of segments above which the accepted chance of a trend is lower, as many "
+    "are tested",
+)  # fmt: skip

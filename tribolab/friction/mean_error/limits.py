@@ -9,11 +9,14 @@ COARSE_BLOCKS = Limit(
     96, "1", "intervals in which a trend is looked for", _TABLE,
 )  # fmt: skip
 MAX_LINES = Limit(3, "1", "oscillations that are fitted to a record", "judgement")
-MIN_CYCLES = Limit(1.2, "1", "cycles from which on an oscillation can be fitted", _TABLE)
+MIN_CYCLES = Limit(
+    1.2, "1", "fewest cycles of an oscillation that is fitted", _TABLE,
+)  # fmt: skip
 FEW_CYCLES = Limit(4.0, "1", "cycles below which an oscillation looks like slow drift", _TABLE)
 LINE_OVER_NOISE = Limit(
-    25.0, "1", "power of an oscillation over the spectrum of the rest: by chance e**-25", _TABLE
-)
+    25.0, "1", "ratio of an oscillation's power to the spectrum of the residual: a chance of "
+    "e**-25", _TABLE,
+)  # fmt: skip
 SLOW_LINE_OVER_NOISE = Limit(
     60.0, "1", "the same for few cycles: noise with a memory of a tenth of the record exceeds 30 "
     "in 10 % of records, 65 in 2 %", _TABLE,
@@ -56,8 +59,8 @@ MAX_MEMORY = Limit(
     "is unbounded", _TABLE,
 )  # fmt: skip
 MIN_SAMPLES_OF_COURSE = Count(
-    16, "1", "samples of a record in which a course is looked for", _TABLE
-)
+    16, "1", "fewest samples of a record in which a trend is looked for", _TABLE,
+)  # fmt: skip
 MIN_SAMPLES_OF_LINE = Count(
     32, "1", "samples of a record in which an oscillation is looked for", _TABLE
 )

@@ -5,14 +5,16 @@ from tribolab.core.limit import Count, Limit
 _TABLE = "tests/detection/stick_slip_table.py, seeds below 10 000; reported on seeds from 20 000"
 
 MIN_EVENT_OVER_SWING = Limit(
-    0.5, "1", "swing of an event over that of the segment's oscillation", _TABLE
-)
-MIN_EVENT_OVER_NOISE = Limit(4.0, "1", "swing of an event over the noise of a sample", _TABLE)
+    0.5, "1", "ratio of the swing of an event to that of the segment's oscillation", _TABLE,
+)  # fmt: skip
+MIN_EVENT_OVER_NOISE = Limit(
+    4.0, "1", "ratio of the swing of an event to the noise of a sample", _TABLE,
+)  # fmt: skip
 MIN_SAMPLES_OF_RECORD = Count(16, "1", "samples of a segment that is evaluated for stick-slip")
 MAX_LINES = Count(6, "1", "spectral lines that are listed for a segment, the strongest first")
 MIN_VARIANCE_OF_LINE = Limit(
-    0.03, "1", "variance of a listed line over that of the strongest one", _TABLE
-)
+    0.03, "1", "ratio of the variances of a listed line and of the strongest one", _TABLE,
+)  # fmt: skip
 MAX_POWER_OF_HARMONIC = Limit(
     1.3, "1", "ratio of the power at a multiple of a frequency to that of a sawtooth's harmonic, "
     "up to which it counts as a harmonic", _TABLE,
@@ -30,11 +32,11 @@ MIN_SPIKE_OVER_NOISE = Limit(
     "not a slip", _TABLE,
 )  # fmt: skip
 SWING_OVER_NOISE = Limit(
-    50.0, "1", "swing over noise from which samples are not averaged further", _TABLE
-)
+    50.0, "1", "ratio of swing to noise above which samples are not averaged further", _TABLE,
+)  # fmt: skip
 MIN_WANDER_OVER_SWING = Limit(
-    0.15, "1", "standard deviation of a slow drift over the swing, from which it may hide drops",
-    _TABLE,
+    0.15, "1", "ratio of the standard deviation of a slow drift to the swing, above which the "
+    "drift may hide drops", _TABLE,
 )  # fmt: skip
 MIN_PERIODS_TO_REMOVE_DRIFT = Count(
     6, "1", "periods in a record whose slow drift is subtracted", _TABLE
@@ -44,8 +46,8 @@ PERIODS_PER_DEGREE_OF_DRIFT = Limit(
 )
 MAX_DEGREE_OF_DRIFT = Count(5, "1", "highest degree of the polynomial fitted to a drift", _TABLE)
 MAX_SCATTER_WITHOUT_WANDER = Limit(
-    0.8, "1", "scatter of the periods without the drift over that with it, if the drift is "
-    "subtracted", _TABLE,
+    0.8, "1", "ratio of the scatter of the periods without the drift to that with it, below "
+    "which the drift is subtracted", _TABLE,
 )  # fmt: skip
 MIN_DROP_IN_STEPS = Limit(1.5, "1", "quantisation steps of the smallest drop", _TABLE)
 MIN_FALL_OF_REVERSED_WAVE = Limit(
@@ -63,12 +65,13 @@ MIN_VARIANCE_OF_SLOW_SINE = Limit(
     0.1, "1", "share of the variance of a slow sine that may hide a faster oscillation", _TABLE
 )
 MAX_MISFIT_OVER_DRIFT = Limit(
-    0.4, "1", "misfit of a wave of 2 to 4 periods over that of a drift (a polynomial)", _TABLE
-)
+    0.4, "1", "ratio of the misfit of a wave of 2 to 4 periods to that of a drift (a polynomial)",
+    _TABLE,
+)  # fmt: skip
 MAX_ABRUPT_FALL = Limit(0.3, "1", "share of a period that an abrupt fall lasts", _TABLE)
 HALF_WIDTH_OF_GATHERED_BAND = Limit(
-    0.15, "1", "half width, over its frequency, of the band over which the power of a line is "
-    "summed", _TABLE,
+    0.15, "1", "half width of the band in which the power of a line is summed, divided by the "
+    "frequency of the line", _TABLE,
 )  # fmt: skip
 MIN_CYCLES_IN_RECORD = Limit(
     4.0, "1", "cycles in a record; a slower oscillation is not distinct from a slow drift", _TABLE
@@ -94,8 +97,9 @@ MAX_ERRORS_BETWEEN_PERIODS = Limit(
     3.0, "1", "standard errors between the periods of drops and spectrum that agree"
 )
 MIN_SWING_OF_SECOND_LINE = Limit(
-    0.25, "1", "swing of a second line over that of the strongest, from which both beat", _TABLE
-)
+    0.25, "1", "ratio of the swing of a second line to that of the strongest, above which the "
+    "two beat", _TABLE,
+)  # fmt: skip
 MIN_SHARE_OF_SHARP_LINE = Limit(
     0.7, "1", "share of the faster variance above which a line is sharp, however periods scatter",
     _TABLE,
@@ -112,8 +116,9 @@ SURE_LINE_BY_CHANCE = Limit(
     "one", _TABLE,
 )  # fmt: skip
 MIN_CYCLES_PER_SLOW_WAVE = Limit(
-    5.0, "1", "cycles per slow wave from which a faster oscillation is not its harmonic", _TABLE
-)
+    5.0, "1", "fewest cycles per slow wave of an oscillation that is not a harmonic of the wave",
+    _TABLE,
+)  # fmt: skip
 MIN_PERIODS_FOR_SCATTER = Count(4, "1", "periods whose scatter is meaningful", _TABLE)
 MIN_ASYMMETRY = Limit(
     0.15, "1", "difference of the falling share of a cycle from 0.5, above which the wave is not "
@@ -130,20 +135,21 @@ MIN_HARMONICS_OF_DROP = Limit(
     0.6, "1", "harmonic content above which such a wave drops sharply", _TABLE
 )
 MAX_FREQUENCY_OF_RIVAL = Limit(
-    0.7, "1", "frequency of a slower line over that of the oscillation, if it may be the period "
-    "instead", _TABLE,
+    0.7, "1", "ratio of the frequency of a slower line to that of the oscillation, if it may be "
+    "the period instead", _TABLE,
 )  # fmt: skip
 MIN_SWING_OF_RIVAL = Limit(
-    0.6, "1", "swing of a slower line over that of the oscillation, if it may be the period "
-    "instead", _TABLE,
+    0.6, "1", "ratio of the swing of a slower line to that of the oscillation, if it may be the "
+    "period instead", _TABLE,
 )  # fmt: skip
 MAX_SCATTER_OF_REGULAR_PERIODS = Limit(
     0.18, "1", "scatter of the periods above which they are irregular", _TABLE
 )
 MIN_PAUSE = Limit(2.2, "1", "usual periods between two drops that may enclose a pause", _TABLE)
 MAX_CHANGE_IN_PAUSE = Limit(
-    0.5, "1", "change of friction in a pause over the one that a stick or a wave would show", _TABLE
-)
+    0.5, "1", "ratio of the change of friction in a pause to that expected for a stick or a wave",
+    _TABLE,
+)  # fmt: skip
 MIN_QUIET_TIME = Limit(
     0.15, "1", "share of the time that is quiet, above which an oscillation is intermittent", _TABLE
 )
@@ -155,7 +161,9 @@ MAX_SOLE_ORDER = Count(
     "with lower ones",
 )  # fmt: skip
 ORDER_BY_CHANCE = Limit(1e-3, "1", "chance that noise shows as much at one of the orders")
-MIN_ORDER_OVER_SURROUNDINGS = Limit(2.0, "1", "amplitude of an order over that of its surroundings")
+MIN_ORDER_OVER_SURROUNDINGS = Limit(
+    2.0, "1", "ratio of the amplitude of an order to that of its surroundings",
+)  # fmt: skip
 MIN_COHERENCE_OF_TURNS = Limit(0.5, "1", "coherence of a wave from piece to piece of the record")
 MAX_PHASE_SHIFT_PER_TURN = Limit(
     0.02, "1", "share of a turn by which phase shifts in each turn, if the stated speed is "
@@ -180,8 +188,8 @@ MAX_CHANGE_OF_RESONANCE = Limit(
     0.03, "1", "difference of ln frequency within which a resonance stays at all speeds"
 )
 MIN_SPEED_RATIO_OF_RESONANCE = Limit(
-    2.0, "1", "ratio of speeds over which the frequency of a resonance stays"
-)
+    2.0, "1", "ratio of the speeds between which the frequency of a resonance is constant",
+)  # fmt: skip
 MAX_EXCESS_OF_BAND = Limit(
     0.7, "1", "ln of the ratio of a band's power to the model of the background; larger values "
     "are clipped to this, so that lines do not raise the background", _TABLE,
@@ -211,21 +219,22 @@ RISE_BY_CHANCE = Limit(
     "frequencies by as much", _TABLE,
 )  # fmt: skip
 MIN_PEAK_OVER_BACKGROUND = Limit(
-    1.5, "1", "power of a peak over its background: the model of the background is no better",
-    _TABLE,
+    1.5, "1", "ratio of the power of a peak to its background: the model of the background is no "
+    "better", _TABLE,
 )  # fmt: skip
 BAND_BY_CHANCE = Limit(
     1e-3, "1", "chance of the significance level that is shown with a spectrum", _TABLE
 )
 MIN_CLIPPED_STRETCHES = Count(
-    3, "1", "stretches of three samples at an extreme, from which the signal is clipped"
-)
+    3, "1", "number of sequences of three samples at an extreme, above which the signal is "
+    "clipped",
+)  # fmt: skip
 MAX_DOUBT = Limit(
     0.2, "1", "probability of smooth sliding above which no oscillation is claimed", _TABLE
 )
 MIN_CYCLES_OF_STIFFNESS = Limit(
-    8.0, "1", "cycles from which the mean drop and its distance are known to 5 %"
-)
+    8.0, "1", "fewest cycles, with which the mean drop and its distance are known to 5 %",
+)  # fmt: skip
 ERROR_OF_CREEP = Limit(
     0.05, "1", "error of the creep share: a mean drop is known to some 5 %",
 )  # fmt: skip
@@ -234,6 +243,6 @@ MIN_RISE_BY_MASS = Limit(
     "to the error of the creep share",
 )  # fmt: skip
 MIN_SLOPE_OVER_STIFFNESS = Limit(
-    1.1, "1", "slope of the force in a stick over the rig's stiffness that contradicts it: the "
-    "slope is known to some 3 %",
+    1.1, "1", "ratio of the slope of the force in a stick to the stated stiffness, above which "
+    "they contradict each other: the slope is known to some 3 %",
 )  # fmt: skip

@@ -33,10 +33,10 @@ UNEQUAL_ERRORS = Limit(
     _MEANS,
 )  # fmt: skip
 POOLED_DOF = Limit(
-    4.0, "1", "degrees of freedom from which on the scatter at other speeds is of use", _MEANS
+    4.0, "1", "fewest degrees of freedom of the scatter at other speeds for it to be used", _MEANS,
 )  # fmt: skip
 PRIOR_WIDTH = Limit(
-    1.5, "1", "scale of the prior of the scatter, over the pooled scatter", _MEANS
+    1.5, "1", "scale of the prior of the scatter, divided by the pooled scatter", _MEANS,
 )  # fmt: skip
 ODD_BY_CHANCE = Limit(0.01, "1", "chance per campaign that sound repeats are called odd", _ODD)
 SUSPECT_BY_CHANCE = Limit(0.05, "1", "the same for a repeat that is suspect", _ODD)
@@ -44,7 +44,9 @@ UNEVEN_SCATTER = Limit(
     0.3, "1", "standard deviation of ln(scatter) between conditions that are alike", "judgement"
 )
 TRIMMED = Limit(0.2, "1", "share of the largest contrasts that do not count as repeatability", _ODD)
-MIN_CONTRASTS_TO_TRIM = Count(5, "1", "contrasts from which the largest are omitted", _ODD)
+MIN_CONTRASTS_TO_TRIM = Count(
+    5, "1", "fewest contrasts of which the largest are omitted", _ODD,
+)  # fmt: skip
 MIN_STROKES_OF_MEMORY = Count(
     24, "1", "strokes of one speed whose order shows how long friction is correlated"
 )

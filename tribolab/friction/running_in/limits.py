@@ -6,7 +6,7 @@ _TABLE = "tests/coverage/running_in_coverage.py, seed 8"
 
 BY_CHANCE = Limit(5e-4, "1", "chance of a running-in in a sequence that has none", _TABLE)
 STEADY_WITHIN = Limit(
-    0.01, "1", "distance of friction from its asymptote, over the asymptote, that counts as steady",
+    0.01, "1", "relative difference between friction and its asymptote that counts as steady",
     "judgement",
 )  # fmt: skip
 NOT_FINISHED = Limit(
@@ -26,8 +26,9 @@ SHORT_TIME = Limit(
     "at the frequencies of the change", _TABLE,
 )  # fmt: skip
 LONGEST_CHANGE_AT_END = Limit(
-    1 / 3, "1", "share of a run that a change at its end may take: else the end is the steady part"
-)
+    1 / 3, "1", "longest change at the end of a run, as a share of the run; if it is longer, the "
+    "end is the steady part",
+)  # fmt: skip
 LATEST_PEAK = Limit(
     1 / 3, "1", "share of the run within which friction may first rise, before it runs in", _TABLE
 )

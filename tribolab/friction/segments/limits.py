@@ -26,8 +26,8 @@ MAX_SPEED_MISFIT = Limit(
     0.2, "1", "a position that is further off in most blocks is another quantity or unit"
 )
 MAX_ERROR_OF_BLOCK = Limit(
-    0.1, "1", "standard error of a block's speed over the speed: five of them are half of the speed"
-)
+    0.1, "1", "relative standard error of a block's speed: five of them are half of the speed",
+)  # fmt: skip
 MIN_DIGITS_OF_BLOCK = Limit(
     5.0, "1", "steps of the position's last digit within a block; the slope of two or three "
     "steps is arbitrary",
@@ -44,8 +44,8 @@ MIN_CORRELATION_OF_FLUCTUATION = Limit(
     0.35, "1", "correlation of neighbouring bins above which they are a motion, not noise", _TRICKY
 )
 MAX_VARIANCE_OF_SMOOTH_MOTION = Limit(
-    0.35, "1", "variance about one smooth motion over that about a constant, if the speed changes "
-    "smoothly", _TRICKY,
+    0.35, "1", "ratio of the variances about one smooth motion and about a constant, below which "
+    "the speed changes smoothly", _TRICKY,
 )  # fmt: skip
 MIN_GAIN_OF_CUBIC = Limit(
     40.0, "1", "sum of squares, in variances of the noise, by which a cubic fits better than a "
@@ -83,8 +83,8 @@ MAX_DIFFERENCE_OF_EQUAL_SPEED = Limit(
     "pieces that a break separates differ by at least one", _TRICKY,
 )  # fmt: skip
 MIN_PLATEAUS_OVER_BUMP = Limit(
-    20.0, "1", "length of two plateaus over that of the disturbance between them that is bridged",
-    _TRICKY,
+    20.0, "1", "ratio of the length of two plateaus to that of the disturbance between them that "
+    "is bridged", _TRICKY,
 )  # fmt: skip
 MAX_RESOLUTIONS_ACROSS_BUMP = Limit(
     2.0, "1", "resolutions within which the speeds on both sides of such a disturbance are equal",
@@ -95,8 +95,9 @@ MIN_ERRORS_OF_UNPROVEN = Limit(
     "otherwise a short plateau becomes a ramp", _TRICKY,
 )  # fmt: skip
 MIN_NEIGHBOUR_OVER_SHORT = Limit(
-    4.0, "1", "length of a neighbouring piece over that of one that is short next to it", _TRICKY
-)
+    4.0, "1", "ratio of the lengths of a neighbouring piece and of a piece, above which the "
+    "piece is short", _TRICKY,
+)  # fmt: skip
 MIN_RAMP_OVER_SPECK = Limit(
     10.0, "1", "ratio of the lengths of a ramp and an adjacent plateau, above which the plateau "
     "belongs to the ramp", _TRICKY,
@@ -106,15 +107,16 @@ MAX_DRIFTS_OF_TRANSIENT = Limit(
     _TRICKY,
 )  # fmt: skip
 MIN_CHANGE_OF_TRANSIENT = Limit(
-    0.5, "1", "change along a transient over its difference from the plateau it leads to", _TRICKY
-)
+    0.5, "1", "ratio of the change along a transient to its difference from the plateau that "
+    "follows", _TRICKY,
+)  # fmt: skip
 MIN_SPIKE_OVER_NOISE = Limit(
     6.0, "1", "noise levels by which a single velocity deviates from its neighbours' median",
     _TRICKY,
 )  # fmt: skip
 MIN_RELATIVE_SPIKE = Limit(1e-3, "1", "share of the speed below which a spike is ignored", _TRICKY)
 MIN_SCATTER_OF_UNSIGNED_NOISE = Limit(
-    0.6, "1", "scatter over the mean of a velocity that is noise without its sign",
+    0.6, "1", "ratio of scatter to mean of a velocity that is noise without its sign",
     "half-normal distribution: 0.76",
 )  # fmt: skip
 MAX_SMALL_OF_UNSIGNED_NOISE = Limit(
@@ -126,8 +128,9 @@ MIN_SHARE_OF_SMALL = Limit(
     "half-normal distribution: 0.19",
 )  # fmt: skip
 MIN_LOAD_STEP = Limit(
-    0.15, "1", "step over the larger load; a smaller one is a slow change of the load", _TRICKY
-)
+    0.15, "1", "step divided by the larger load; a smaller one is a slow change of the load",
+    _TRICKY,
+)  # fmt: skip
 MAX_SCATTER_OF_LEVEL = Limit(
     0.05, "1", "relative deviation from a load level within which the load stays there", _TRICKY
 )
@@ -157,8 +160,8 @@ MAX_CREEP_SPEED = Limit(
     "distance",
 )  # fmt: skip
 MIN_DISTANCE_OF_CREEP = Limit(
-    0.01, "1", "distance of such a slow piece over the longest distance of a piece"
-)
+    0.01, "1", "distance of such a slow piece divided by the longest distance of a piece",
+)  # fmt: skip
 MAX_SPEED_OF_NOISE = Limit(
     0.02, "1", "share of the highest speed up to which a velocity may be noise"
 )
@@ -166,15 +169,16 @@ MIN_SAMPLES_OF_UNSIGNED_NOISE = Count(
     20, "1", "samples that show whether a velocity is noise without its sign"
 )
 MAX_RAMP_OVER_PLATEAU = Limit(
-    1.5, "1", "duration of a ramp over that of the plateau next to it, above which the data must "
-    "show that the plateau is distinct", _TRICKY,
+    1.5, "1", "ratio of the durations of a ramp and the plateau next to it, above which the data "
+    "must show that the plateau is distinct", _TRICKY,
 )  # fmt: skip
 MIN_INTERVALS_OF_PAUSE = Limit(
     20.0, "1", "usual sampling intervals of a pause in which nothing was recorded"
 )
 MIN_RAMP_OVER_PAUSE = Limit(
-    3.0, "1", "duration of a ramp over that of a pause in it, above which it is one ramp"
-)
+    3.0, "1", "ratio of the duration of a ramp to that of a pause in it, above which it is one "
+    "ramp",
+)  # fmt: skip
 MIN_ERRORS_FROM_REST = Limit(
     8.0, "1", "standard errors between a piece's speed and rest: as breaks select the pieces, "
     "chance alone reaches six", _TRICKY,
@@ -213,16 +217,18 @@ MAX_ERROR_OF_SLOPE = Limit(
 )
 MIN_SAMPLES_OF_BLOCK = Count(8, "1", "samples in a block whose slope is its speed", _STROKES)
 MIN_JUMP = Limit(
-    0.002, "1", "jump of a position over its range; a smaller one does not move a segment's ends",
-    _STROKES,
+    0.002, "1", "jump divided by the range of the position; a smaller one does not move a "
+    "segment's ends", _STROKES,
 )  # fmt: skip
 MIN_DIGITS_OF_JUMP = Limit(
     2.5, "1", "digits of a jump: a coarse encoder advances by one or two at once", _STROKES
 )
-MIN_RATE_OF_JUMP = Limit(3.0, "1", "rate of a jump over the rate around it", _STROKES)
+MIN_RATE_OF_JUMP = Limit(
+    3.0, "1", "ratio of the rate of a jump to the rate around it", _STROKES,
+)  # fmt: skip
 MIN_SCATTER_OF_JUMP = Limit(
-    20.0, "1", "rate of a jump over the scatter of the rates around it", _STROKES
-)
+    20.0, "1", "ratio of the rate of a jump to the scatter of the rates around it", _STROKES,
+)  # fmt: skip
 MAX_UNEQUAL_STEPS = Limit(
     0.02, "1", "share of a calculated motion's steps that differ from the usual one, at its ends",
     _STROKES,
@@ -234,8 +240,8 @@ MIN_DISTANCE_OVER_NOISE = Limit(
     3.0, "1", "standard deviations of a position reading that a sliding piece covers", _STROKES
 )
 MIN_SPEED_OVER_ERROR = Limit(
-    10.0, "1", "speed over the error of a block's speed, from which blocks are long enough",
-    _STROKES,
+    10.0, "1", "ratio of speed to the error of a block's speed, above which blocks are long "
+    "enough", _STROKES,
 )  # fmt: skip
 MIN_SPEED_OF_STROKE = Limit(0.2, "1", "share of the usual speed; slower motion has no direction")
 MIN_LENGTH_OF_STROKE = Limit(0.5, "1", "share of the usual length of a stroke")
@@ -283,8 +289,8 @@ MIN_COVERED_STROKE = Limit(
     _STROKES,
 )  # fmt: skip
 MIN_STROKE_OVER_NOISE = Limit(
-    20.0, "1", "length of a stroke over the noise of a position reading", _STROKES
-)
+    20.0, "1", "ratio of the length of a stroke to the noise of a position reading", _STROKES,
+)  # fmt: skip
 RAMP_SHARE = Limit(
     0.8, "1", "share of a record with rising or falling speed: it is a test by ramps", "judgement"
 )

@@ -8,10 +8,13 @@ MAX_SAMPLE_TILT = Limit(
     "sample that is askew by more is seen with the bare eye",
 )  # fmt: skip
 TILT_CHANGES = Limit(
-    0.5, "1", "change of the loops' middle along a run, over its mean, from which on it drifts: a "
-    "tilt does not change with time",
+    0.5, "1", "relative change of the loops' middle along a run, above which it drifts: a tilt "
+    "does not change with time",
 )  # fmt: skip
-LOADS_DIFFER = Limit(1.2, "1", "largest over smallest load that can tell a tilt from a zero")
+LOADS_DIFFER = Limit(
+    1.2, "1", "ratio of the largest to the smallest load, above which a tilt can be "
+    "distinguished from a zero",
+)  # fmt: skip
 UNLOADED_NOISE = Limit(
     3.0, "1", "standard deviations of the unloaded reading within which another rest is unloaded"
 )
@@ -56,8 +59,8 @@ MIN_ERRORS_OF_READINGS = Limit(
     4.0, "1", "standard errors between two readings that differ, at rest or with load", _TRICKY
 )
 MAX_SLOPE_OF_DRIFT = Limit(
-    2.0, "1", "slope of a drift of the zero over that between the next loops; a steeper change is "
-    "a jump", _TRICKY,
+    2.0, "1", "ratio of the slope of a drift of the zero to that between the next loops; a "
+    "steeper change is a jump", _TRICKY,
 )  # fmt: skip
 MAX_SPEED_DIFFERENCE_OF_PAIR = Limit(
     0.25, "1", "relative difference of speed up to which two strokes make a pair"
@@ -70,8 +73,9 @@ MAX_MIDDLE_OF_SIGNED_LOOP = Limit(
     0.3, "1", "ratio of the offset to the half loop, below which the force has its sign", _TRICKY,
 )  # fmt: skip
 MIN_LEVEL_RATIO_OF_LOST_SIGN = Limit(
-    0.5, "1", "smaller over larger level of two strokes whose sign was lost", _TRICKY
-)
+    0.5, "1", "ratio of the smaller to the larger level of two strokes whose sign was lost",
+    _TRICKY,
+)  # fmt: skip
 MAX_FRICTION_RATIO_OF_PARTS = Limit(
     4.0, "1", "ratio of friction between parts of a run that measure the same friction", _TRICKY
 )
@@ -99,8 +103,8 @@ MAX_REVERSALS_WITH_SPIKE = Limit(
 )
 MIN_REVERSALS_WITH_DIP = Limit(0.5, "1", "share of reversals that show the same", _TRICKY)
 MAX_DIFFERENCE_OF_LEVELS = Limit(
-    0.25, "1", "difference of the levels of both directions over their mean, if they are one "
-    "level", _TRICKY,
+    0.25, "1", "relative difference of the levels of both directions, if they are one level",
+    _TRICKY,
 )  # fmt: skip
 MAX_SPEED_DIFFERENCE_OF_REVERSAL = Limit(
     0.2, "1", "relative difference of the speeds before and after a reversal", _TRICKY
@@ -120,8 +124,8 @@ MAX_LOAD_OF_BARE_REST = Limit(
     0.4, "1", "share of the load below which a rest may be one without contact"
 )
 MAX_RATIO_TO_REST = Limit(
-    1.5, "1", "load of a segment over the reading at a rest, below which the segment slides at "
-    "the load of the rest", _TRICKY,
+    1.5, "1", "ratio of the load of a segment to the reading at a rest, below which the segment "
+    "slides at the load of the rest", _TRICKY,
 )  # fmt: skip
 MIN_SAMPLES_OF_REST = Count(10, "1", "samples of an unloaded rest")
 MAX_SCATTER_OF_BARE_REST = Limit(
@@ -136,7 +140,7 @@ SPEED_DEPENDENCE = Limit(
 )  # fmt: skip
 MIN_SPEED_DEPENDENCE = Limit(0.05, "1", "the same if a smaller one was measured")
 MAX_SPEED_RATIO_OF_LOOP = Limit(
-    1.0, "1", "difference of the speeds of a loop's strokes over their mean, unless both are "
-    "stated to be a loop",
+    1.0, "1", "relative difference of the speeds of a loop's strokes, unless both are stated to "
+    "be a loop",
 )  # fmt: skip
 MIN_LOAD_OF_REST = Limit(0.8, "1", "share of the load from which a rest is loaded")

@@ -10,11 +10,10 @@ AGREEMENT = Limit(
     "te67_pin_on_disc_MIT: speed = rotation x radius to 0.4 % over 1800 rows",
 )  # fmt: skip
 SPREAD = Limit(
-    0.05,
-    "1",
-    "the ratio that a rule makes is constant over the rows, from the 10th to the 90th percentile",
+    0.05, "1", "variation of the ratio of both sides of a rule from row to row, between the 10th "
+    "and the 90th percentile",
     "te67_pin_on_disc_MIT: 0.9 % for its distance, which is written in whole turns",
-)
+)  # fmt: skip
 ROWS = Limit(
     10, "rows", "fewest non-zero rows from which a ratio is determined", "judgement",
 )  # fmt: skip
