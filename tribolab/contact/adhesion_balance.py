@@ -72,7 +72,7 @@ class Interface:
         kappa: float,
         c_a: float,
     ) -> Interface:
-        """Return an interface with nodes dense where the stress increases, and integrals between.
+        """Return an interface whose nodes are dense where the stress increases steeply.
 
         Raises
         ------

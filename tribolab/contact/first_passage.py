@@ -33,7 +33,7 @@ class Diffusion:
 
     @classmethod
     def over(cls, time: ArrayLike) -> Diffusion:
-        """Return a diffusion with given nodes in time.
+        """Return the diffusion on given nodes in time.
 
         Raises
         ------

@@ -10,7 +10,7 @@ import numpy as np
 Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 _ROUGH, _FINE = 1e-4, 1e-11  # tolerances of the root: for the cheap and for the expensive function
-_SLOPE_STEP = 1e-3  # share of the bracket over which the cheap function's slope is computed
+_SLOPE_STEP = 1e-3  # step for the slope of the cheap function, as a share of the bracket
 _SECANTS = 12
 
 

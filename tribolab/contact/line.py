@@ -236,7 +236,7 @@ def solve_dry(
         target, slope = table.pressure_and_slope(c + shape)
         factor = lu_factor(np.eye(p.size) - slope[:, None] * kernel)
         both = lu_solve(factor, np.stack([target - p, slope], axis=1))
-        # Newton's equation for c: sum of a + b dc over the cells makes up the missing load
+        # Newton's step dc of c: the load of a + b dc in the cells equals the missing load
         dc = ((force - weight @ p) - weight @ both[:, 0]) / (weight @ both[:, 1])
         dp = both[:, 0] + both[:, 1] * dc
         t = _line_search(p, c + shape, dp, dc + kernel @ dp, weight, table)

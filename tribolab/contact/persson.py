@@ -281,7 +281,7 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
     half = (x[1] - x[0]) / 2
     y = np.exp(x[:-1, None] + half * (1 + t))
     pieces = half * (erf(y) ** 2 * np.exp(-y * y)) @ weight
-    last = exp1(np.exp(2 * x[-1])) / 2  # erf = 1 from here on
+    last = exp1(np.exp(2 * x[-1])) / 2  # erf = 1 at larger y
     both = np.cumsum(np.concatenate([[last], pieces[::-1]]))[::-1]
     value = gamma / 2 * exp1(np.exp(2 * x)) + 3 * (1 - gamma) * both
     slope = -tail_slope(np.exp(x), gamma) / value

@@ -96,7 +96,7 @@ def rough_point_contact(
     table = separation_table(psd, contact.effective_modulus, gamma)
     a = float(hertz_half_width(force, contact))
     edge = (table.decay_length * contact.radius / (1.9 * a**2 / 2)) ** (2 / 3)
-    # outside, the pressure falls as exp(-u/u0), as in a line contact
+    # outside the Hertz contact, the pressure falls as exp(-u/u0), as in a line contact
     end = np.sqrt(1 + 2 * contact.radius * table.decay_length * np.log(1e12) / a**2)
     layer = contact.layer(a)
     mesh = polar_mesh(rings, _SECTORS, min(float(edge), 0.5), 1.1 * float(end), 1.0, layer)

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 @dataclass(frozen=True, eq=False)
 class FactorTable:
-    """Interpolated factors: cubics of ln phi over ln(u - origin), with asymptotes at both ends.
+    """Interpolated factors: cubics of ln phi against ln(u - origin), with asymptotes at both ends.
 
     The cubics are monotone, or splines if the factors are known to be smooth.
 
@@ -35,7 +35,7 @@ class FactorTable:
         object.__setattr__(self, "_curve", PPoly(both, curve.x))
 
     def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the factors at mean separations u and their derivatives by u (factor, ...)."""
+        """Return the factors and d(factor)/du at mean separations u (factor, ...)."""
         distance = np.maximum(u - self.origin, 0)
         first, last = self._curve.x[0], self._curve.x[-1]
         with np.errstate(divide="ignore", invalid="ignore"):

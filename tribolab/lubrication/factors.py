@@ -113,7 +113,7 @@ class FlowFactors:
         return phi_p, phi_p_slope, u * share, share + u * rate
 
     def dataset(self, separation: str | ArrayLike | xr.DataArray) -> xr.Dataset:
-        """Return a dataset of the five factors [1] over separations [m]."""
+        """Return a dataset of the five factors [1] against separation [m]."""
         over = labelled(separation, "separation")
         if not np.all(over.values > 0):
             raise AnalysisError(

@@ -13,7 +13,7 @@ from tribolab.lubrication.thinning import ThinnedFactors
 # Share of the smooth conductance u^3 that is kept below percolation, so that fluid enclosed by
 # closed channels has a pressure; its flow is negligible.
 _LEAK = 1e-10
-# Film thickness over h_rms. Below the first value the film is interpolated linearly between cells,
+# Film thickness divided by h_rms. Below the first value, interpolation between cells is linear,
 # because flow changes by decades where channels close; above the second, by a cubic.
 _STRAIGHT, _CURVED = 0.3, 0.6
 

@@ -20,7 +20,7 @@ _ROUNDING = 1e-8  # residual accepted if a further step no longer improves it
 
 
 class Repulsion(Protocol):
-    """Type of a contact pressure over separation: that of a rough contact, or a substitute."""
+    """Type of a contact pressure against separation: that of a rough contact, or a substitute."""
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the contact pressure [Pa] and its slope [Pa/m] at separations [m]."""
@@ -218,7 +218,7 @@ def _deficit(problem: Problem, film: _Film) -> np.ndarray:
 
 
 def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
-    """Return the derivatives of residuals and load by the film in each cell and the constant."""
+    """Return the derivatives of residuals and load with respect to each cell's film and c."""
     mesh, n = problem.mesh, film.residual.size
     front, rear = film.fields.front, film.fields.rear
     full = film.scale.copy()

@@ -209,7 +209,7 @@ def _heating(
 
 
 def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
-    """Return the ratio of P(q) with to P(q) without adhesion at rest (pressures, 1, wavenumber)."""
+    """Return P(q) with adhesion at rest, divided by P(q) without (pressures, 1, wavenumber)."""
     q, spectrum = refine_nodes(*spectrum_arrays(psd), PER_DECADE)
     bound = adhesion(over.values.ravel(), psd, stiffness, work)
     nodes = bound["wavenumber"].values

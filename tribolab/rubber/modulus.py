@@ -24,7 +24,7 @@ class Modulus(Protocol):
 
 @dataclass(frozen=True)
 class FractionalZener:
-    """Fractional Zener solid: rubbery and glassy plateaus with a power-law transition between.
+    """Fractional Zener solid: rubbery and glassy plateaus, joined by a power-law transition.
 
     Parameters
     ----------
