@@ -260,7 +260,7 @@ def _fit_free(
 def _jacobian(
     computed: _Computed, best: np.ndarray, stress: float, area: np.ndarray, used: np.ndarray
 ) -> np.ndarray:
-    """Return the derivatives of mu by sigma_f and by the logarithms of the free parameters."""
+    """Return the derivatives of mu with respect to sigma_f and ln(each free parameter)."""
     columns = [area[used]]
     for step in _LN_STEP * np.eye(best.size):
         above, below = (

@@ -12,7 +12,7 @@ from tribolab.lubrication.factor_table import FactorTable
 from tribolab.lubrication.factors import FlowFactors
 
 EXCESS_OF_SHEAR = 0.24  # largest excess of phi_f over numerical results, from 2 to 3.2 h_rms
-LACK_OF_PRESSURE = 0.17  # largest relative increase of p(u) to numerical results, below _CLOSE
+LACK_OF_PRESSURE = 0.17  # relative increase of p(u) below _CLOSE that gives numerical results
 _NUMERICS, _GAUSSIAN = 3.2, 5.0  # u/h_rms: end of numerical results, start of Gaussian gaps
 _CLOSE, _APART = 0.14, 0.28  # u/h_rms at which the correction of p(u) starts to decrease, and ends
 

@@ -99,7 +99,7 @@ class _Film(NamedTuple):
     fields: Fields
     flow: Flow
     total: np.ndarray  # total pressure, from elasticity (n)
-    yielding: np.ndarray  # derivative of the contact pressure by the film (n)
+    yielding: np.ndarray  # d(contact pressure)/d(film) (n)
     flux_slope: np.ndarray  # derivatives by the films of the four surrounding cells (4, n + 1)
     scale: np.ndarray  # converts a flux imbalance of a cell to a pressure (n)
     residual: np.ndarray  # (n)
@@ -252,7 +252,7 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
 
 
 def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
-    """Return the derivatives of the flux through a face by the films and the constant (n + 1)."""
+    """Return the derivatives of the flux at a face with respect to all films and c (n + 1)."""
     mesh, n = problem.mesh, film.residual.size
     row = np.zeros(n + 1)
     for cell, sign in ((face, -1), (face - 1, 1)):
@@ -305,7 +305,7 @@ def _cavity(
 
 
 def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the contact pressure and its derivative by the film."""
+    """Return the contact pressure and its derivative with respect to the film thickness."""
     if problem.separation is None:
         return np.zeros_like(film), np.zeros_like(film)
     pressure, slope = problem.separation.pressure_and_slope(film * problem.gap)

@@ -23,7 +23,7 @@ _LIMIT = 3.0
 _EWMA_WEIGHT, _EWMA_LIMIT = 0.2, 2.86
 _CUSUM_SLACK, _CUSUM_LIMIT = 0.5, 4.77
 FEWEST_OF_BASELINE = 5  # fewest points of a baseline
-MANY = 30  # points of a baseline from which its standard deviation is from moving ranges
+MANY = 30  # least number of baseline points for a standard deviation from moving ranges
 # ratio of mean moving range to standard deviation, for independent normally distributed values
 _RANGE_TO_SIGMA = 2 / math.sqrt(math.pi)
 RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, for each point after the first

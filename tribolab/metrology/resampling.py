@@ -118,7 +118,7 @@ def rotation_test(
 
 
 def _allowed_draws(level: float, draws: int) -> int:
-    """Return the largest number of draws that may exceed a difference that is significant."""
+    """Return how many draws may exceed a difference that still counts as significant."""
     return math.floor(level * draws * (1 + _ROUNDING))
 
 

@@ -219,7 +219,7 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
 
 
 def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
-    """Return evidence from the friction of uniform slip with the shear stress of rough surfaces."""
+    """Return evidence from the friction that uniform slip would cause at the rough shear stress."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
     stress = known.rough_shear_stress
     if stress is None or not uniform > _MIN_SLIP_RATIO * seen > 0:  # nothing to explain
@@ -236,7 +236,7 @@ def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
 
 
 def forced_wetting(curve: xr.Dataset, slip: xr.Dataset | None, known: Mode) -> dict[str, float]:
-    """Return the speeds between which forced wetting starts: stick-slip or high friction ends."""
+    """Return the speeds between which stick-slip or high friction ends: forced wetting starts."""
     if not known.fluid or slip is None:
         return {}
     speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values

@@ -222,7 +222,7 @@ def _curve(
 
 
 def _count_in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
-    """Return the number of speeds with friction in the model's 95 % band, and with a band."""
+    """Return at how many speeds friction is in the model's 95 % band, and how many have a band."""
     if band is None:
         return {"speeds_in_band": float("nan"), "speeds_with_band": float("nan")}
     log_speed = np.log(band["sliding_speed"].values)

@@ -166,7 +166,7 @@ class JointModel:
         return self._design_of(self.points)
 
     def _design_of(self, points: Points) -> np.ndarray:
-        """Return the derivatives of ln(shear stress) by the parameters (point, parameter)."""
+        """Return d ln(shear stress)/d(parameter) for all parameters (point, parameter)."""
         where, number = self.parameters, points.curve
         surface, log_load, dry = (
             np.array([getattr(curve, name) for curve in self.curves])[number]

@@ -70,7 +70,7 @@ class JointPriors:
     dry_over_wet: float = 0.3
 
     def __post_init__(self) -> None:
-        """Raise an error if a value is not a standard deviation."""
+        """Raise an error unless each value is finite and above 0, or 0 to fix its parameter."""
         free = ("speed_exponent", "load_exponent", "viscosity_spread")  # 0 fixes these parameters
         for name in (field.name for field in fields(self)):
             value = getattr(self, name)

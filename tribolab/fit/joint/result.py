@@ -74,7 +74,7 @@ class Marginal:
 
 @dataclass(frozen=True, eq=False)
 class JointFit:
-    """Result of a joint fit of friction over speed at several loads.
+    """Result of a joint fit of friction against speed at several loads.
 
     Parameters
     ----------

@@ -93,7 +93,7 @@ class PointProblem(NamedTuple):
         return _faces(self.mesh.faces.tobytes(), self.mesh.sectors)
 
     def contact(self, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the contact pressure and its derivative by the film."""
+        """Return the contact pressure and its derivative with respect to the film thickness."""
         if self.separation is None:
             return np.zeros_like(film), np.zeros_like(film)
         pressure, slope = self.separation.pressure_and_slope(film * self.gap)
