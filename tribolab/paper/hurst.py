@@ -12,7 +12,7 @@ from tribolab.records.surfaces.hurst_words import hurst_verdict
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, moment
 
-_SLOPE = 3  # order of the moment of q^3 C, the mean square slope
+_SLOPE = 3  # exponent of q in the integral of q^3 C, which gives the mean square slope
 _ENDLESS = 1e30  # 1/m, practically infinite wavenumber
 
 

@@ -11,9 +11,7 @@ from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.model import JointModel, Shared
 
 _MAX_STEPS = 200
-_NEGLIGIBLE_LN_ODDS = (
-    25.0  # deficit of ln(probability) from the best, above which a search is given up
-)
+_NEGLIGIBLE_LN_ODDS = 25.0  # ln(odds) against the best mode above which a search ends
 _CONVERGED_DECREMENT = 1e-6  # gain in log probability of a converged mode: 1e-3 standard deviations
 _MAX_GAIN = 10.0  # largest remaining gain of a search, relative to that expected of its next step
 _MIN_GAIN = 0.5  # share of the expected gain below which a shorter step is tried
