@@ -23,7 +23,7 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 class OfRuns(Protocol[P, R]):
-    """Type of a function that takes one run, or a list of runs for which it returns a list."""
+    """Type of a function of one run that returns a list of results for a list of runs."""
 
     @overload
     def __call__(self, runs: list[xr.Dataset], /, *args: Any, **kwargs: Any) -> list[R]: ...
@@ -219,7 +219,7 @@ def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, 
 
 
 def _dims(value: Any) -> tuple[Hashable, ...]:
-    """Return the dimensions of an argument; for a dataset with a spectrum, the spectrum's."""
+    """Return the dimensions of an argument, or of the spectrum if it is a dataset with one."""
     holder = value["psd_2d"] if "psd_2d" in getattr(value, "data_vars", ()) else value
     return tuple(getattr(holder, "dims", ()))
 

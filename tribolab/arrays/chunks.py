@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.arrays.scratch import let_go, room
 
 PIECE = 1 << 17  # samples per piece
-_GIVEN_BACK = 1 << 21  # samples after which memory is returned to the system, which is slow
+_GIVEN_BACK = 1 << 21  # samples between returns of memory to the system; each return is slow
 _Part = TypeVar("_Part")
 
 

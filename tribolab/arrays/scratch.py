@@ -85,7 +85,7 @@ def let_go() -> None:
 
 
 def tidy_up() -> None:
-    """Delete the scratch files of arrays that are no longer used, even if references are cyclic."""
+    """Delete scratch files of unused arrays, including arrays that only refer to each other."""
     if _mapped:
         gc.collect()
         let_go()

@@ -101,8 +101,8 @@ LIMITS = {
     "pressure": ValidityLimit(
         "contact pressure over the largest in the table of p(u)",
         1.0,
-        # u is 1e-17 h_rms at the end of the table and falls as exp(-k p^2) beyond; at four times
-        # that pressure p(u) still inverts to 1e-5, at five dp/du overflows, at 5.3 u is 0
+        # at the end of the table u is 1e-17 h_rms; beyond, it falls as exp(-k p^2). At 4 times the
+        # last pressure p(u) still inverts to 1e-5, at 5 times dp/du overflows, at 5.3 times u is 0
         4.0,
         "beyond it the roughness is pressed flat and p(u) is extrapolated",
         "take a smaller load, or smooth surfaces",

@@ -15,7 +15,7 @@ from tribolab.studies import xu2026
 _MEDIA = ("glycerol", "dry")
 
 # Effective shear stress [Pa] of the dry contact area with adhesion: the order of magnitude of
-# Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; its values are only in a figure.
+# Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; the paper only plots the values.
 _DRY_SHEAR_STRESS = {"Smooth": 0.130e6, "Sb-S": 0.605e6, "Sb-R": 0.907e6}
 
 

@@ -1,4 +1,4 @@
-"""True values of a simulated campaign; they are next to its raw files, unused by the analysis."""
+"""True values of a simulated campaign, stored with its raw files; the analysis ignores them."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def _words_of_pint() -> tuple[frozenset[str], tuple[str, ...]]:
 
 @functools.lru_cache(maxsize=4096)
 def _may_be_unit(name: str) -> bool:
-    """Whether pint may know a unit; if not, its slow registry is not asked.
+    """Whether pint may know a unit; if not, its registry, which loads slowly, is not needed.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def _may_be_unit(name: str) -> bool:
 
 # typeset exponents and signs
 _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
-_TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", but not the x1000 of a name
+_TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", but not a name like "x1000"
 _RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # matches whole runs of blanks without backtracking
 

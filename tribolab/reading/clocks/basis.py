@@ -22,9 +22,9 @@ _MAX_STOP = 0.3
 _SPEED_FUNCTIONS = 6  # most hat functions of the speed in one model
 _RELAXATION_TIMES = (0.1, 0.5, 3.0)  # relaxation times of the force, as multiples of the usual rest
 _RECOVERY_LENGTHS = (1e-4, 3e-3)  # recovery lengths after a rest, as share of the longest stroke
-_ROUNDING_OF_SPEED = 1e-6  # rounding error of zero speed, as share of the fastest
+_ROUNDING_OF_SPEED = 1e-6  # largest rounding error of zero speed, as share of the fastest speed
 _MAX_ROWS = 300_000  # most rows used of a motion log
-SLACK_LENGTHS = (0.003, 0.01, 0.03)  # share of the longest stroke
+SLACK_LENGTHS = (0.003, 0.01, 0.03)  # slack, as shares of the longest stroke
 
 
 class Basis:
@@ -125,7 +125,7 @@ class Basis:
     def _ramps(
         self, velocity: Array, way: NDArray[np.int64], last: NDArray[np.int64], length: float
     ) -> Array:
-        """Return the direction of motion (kept at rest), changing in a ramp before each start."""
+        """Return the last direction of motion, which changes in a ramp before each start."""
         out = last.astype(float)
         starts = [k for k in self.events if way[k] != 0]
         for k, after in zip(starts, [*starts, len(way) - 1][1:], strict=True):

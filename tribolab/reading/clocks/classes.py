@@ -51,7 +51,7 @@ def motion_classes(velocity: Array) -> tuple[NDArray[np.int64], NDArray[np.int64
 
 
 def velocity_classes(velocity: Array) -> NDArray[np.int64]:
-    """Sort velocities into numbered classes: fast backward is 0, then rest, then forward.
+    """Return the class number of each velocity, from 0 for fast backward, through rest, to forward.
 
     >>> velocity_classes(np.array([-1.0, 0.0, 1.0, 0.9, 0.1])).tolist()
     [0, 15, 30, 30, 27]
@@ -230,7 +230,7 @@ class Classes:
         return _explained(number, total) / np.maximum(whole, 1e-12)
 
     def refined(self, shift: float, around: float) -> float:
-        """Return the shift [s] near a coarse one at which the classes explain most of the force."""
+        """Return the shift [s] near a coarse one at which the classes explain the force best."""
         while around > 0.2 * self.period:
             shifts = shift + around * np.linspace(-1.0, 1.0, 33)
             shift = float(shifts[np.argmax(self.explained(shifts))])

@@ -20,7 +20,7 @@ from tribolab.reading.clocks import limits
 _BLOCK_SAMPLES = 1 << 18  # samples per block, to save memory
 
 _COUNTER_TICKS = [10.0**k for k in range(-9, 1)]
-# ranges of counters [s]: 2^bits clock ticks, half a day, a day; a fall by one is a wrap
+# ranges of counters [s]: 2^bits clock ticks, half a day, a day; a fall by a range is a wrap
 _COUNTERS = tuple(
     sorted(
         {
@@ -103,7 +103,7 @@ def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
 
 
 def rows_at_fault(time: np.ndarray, faults: Faults) -> np.ndarray:
-    """Return a mask of the rows whose time is missing, stray, or not later than all times before.
+    """Return a mask of rows whose time is missing, stray, or not later than every earlier time.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def _usual_and_spread(steps: np.ndarray) -> tuple[float, float]:
     if not rising.size:
         return 1.0, 0.0
     usual = float(np.median(rising, overwrite_input=True))
-    for first, last in pieces(0, rising.size):  # the median reorders them, which does not matter
+    for first, last in pieces(0, rising.size):  # the median reordered the steps, which is harmless
         rising[first:last] = np.abs(rising[first:last] - usual)
     return usual, float(np.median(rising, overwrite_input=True))
 

@@ -62,7 +62,7 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
     way = _directions(smooth, noise)
     way = _without_short_motion(path, way)
     plain = _directions(velocity, 0.0)
-    # quiet at rest: no averaging needed
+    # the velocity is quiet at rest, so it needs no averaging
     if _turns(plain) <= limits.MAX_CHANGES_OF_NOISE.value * _turns(way):
         return Motion(np.where(plain != 0, velocity, 0.0), plain, 0.0)
     interval = float(np.percentile(np.diff(time), 5))

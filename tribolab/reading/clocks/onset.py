@@ -22,7 +22,7 @@ from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
 _COMPARED_PART = 0.05  # share of a stroke's length that is fitted, with equal time before it
-_STICK_DISTANCES = 17  # number of distances d, each twice the one before
+_STICK_DISTANCES = 17  # number of trial distances d; each is twice the previous one
 _LONGEST_STICK = 1e-6 * 2.0 ** (_STICK_DISTANCES - 1)  # longest d, as a share of the stroke length
 _SEARCHED_TIME = 0.3  # share of the duration of fast strokes (or rests) that is searched
 _MAX_SAMPLES = 5000  # most samples of one start; longer, slow starts are not informative

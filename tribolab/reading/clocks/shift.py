@@ -173,7 +173,7 @@ class _Search:
         apart = abs(self.onsets.shift - self.starts.shift)
         self.settled = self.twice and apart <= self.starts.uncertainty
         _require(not self.vague or self.twice)
-        # starts with a large error were searched around a wrong shift
+        # a large error suggests a search around a wrong shift, so the starts are searched again
         if not self.twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
             repeated = self._by_onsets(ShiftEstimate(shift, uncertainty, ratio))
             estimate = repeated if repeated.uncertainty < estimate.uncertainty else estimate
@@ -222,7 +222,7 @@ class _Search:
         """Fit the force with all effects of motion, close to the shift found from the starts."""
         estimate = self.estimate
         durations = np.diff(self.motion_time[changes(self.way)])
-        self.stroke = float(median(durations[durations > 0.1 * durations.max()]))  # also of rests
+        self.stroke = float(median(durations[durations > 0.1 * durations.max()]))  # including rests
         least = 5.0 * estimate.uncertainty
         inside = min(0.4 * self.stroke, 0.8 * float(durations[[0, -1]].min()))
         near = min(self.span, max(least, inside))

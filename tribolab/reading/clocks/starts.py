@@ -46,7 +46,7 @@ class _Start(NamedTuple):
     time: float
     before: float
     after: float
-    few: float  # s, time in which the shortest length is slid
+    few: float  # s, time to slide the shortest length
     sampling: float  # s, resolution of the two logs
 
 
@@ -268,7 +268,7 @@ def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Star
     prior = np.diag([0.0, limits.CLOCK_RATE_ERROR.value**-2])
     order = np.argsort(shifts)
     half = np.cumsum(errors[order] ** -2.0)
-    # start at the weighted median, so that outliers do not matter
+    # the first guess is the weighted median, on which outliers have little effect
     middle = shifts[order][np.searchsorted(half, 0.5 * half[-1])]
     solution = np.array([middle, 0.0])
     for _ in range(50):

@@ -133,7 +133,7 @@ def _index(column: Column, names: Sequence[str], width: int, dialect: Dialect) -
         )
     hint = nearest(column.name or "", [name for name in names if name])
     if "did you mean" not in hint and not any(known.name in names for known in dialect.column):
-        hint = ""  # with no column of this instrument, the file's content is not quoted
+        hint = ""  # the file has no column of this instrument, so its names are not quoted
     raise LacksError(f"column '{shown(called)}' ({column.key}) is missing{hint}")
 
 

@@ -75,7 +75,7 @@ def parse_formula(text: str) -> ast.expr:
         raise UnitError(f"formula '{shown(text)}' is longer than {_MAX_FORMULA} letters")
     text = text.strip()
     try:
-        with warnings.catch_warnings():  # "1if" is only deprecated
+        with warnings.catch_warnings():  # Python only warns of text such as "1if"
             warnings.simplefilter("ignore")
             tree = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:

@@ -280,5 +280,5 @@ def _group(file: netCDF4.Dataset, group: str | None, only: Collection[str] | Non
         data[name].attrs = decoded(data[name].attrs)
         data[name].encoding = {}
     data.encoding = {}
-    data.set_close(None)  # in memory; an open file could not be sent to another process
+    data.set_close(None)  # the data are in memory; an open file could not go to another process
     return data

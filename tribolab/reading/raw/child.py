@@ -25,9 +25,9 @@ from tribolab.reading.raw.server import Ended, Job
 from tribolab.reading.raw.unpacked import ZIP, refuse_bomb
 
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE = 0, 3, 4, 5
-_TEXT_PER_NUMBER = 4  # ratio of the limits of a result file and of its arrays: text is longer
+_TEXT_PER_NUMBER = 4  # limit of a result file divided by that of its arrays: text is longer
 _PIPE = 1 << 15  # most bytes of module names that a child sends
-_POLL = 0.01  # s between checks of a child, if the system cannot wait for one
+_POLL = 0.01  # s between checks whether a child has ended, if the system cannot wait for it
 
 
 def serve() -> None:
@@ -56,7 +56,7 @@ def _done(job: Job) -> Ended | str:
         except ImportError as error:
             return error.name or library
     importlib.import_module(job.module)
-    if not hasattr(os, "fork"):  # the server itself reads the file, and is replaced if it dies
+    if not hasattr(os, "fork"):  # the server reads the file itself; if it dies, it is replaced
         return Ended(_work(job))
     here, there = os.pipe()
     pid = os.fork()

@@ -81,7 +81,7 @@ def on_one_clock(columns: Sequence[RawColumn], lead: int | None = None) -> OneCl
         values.append(np.interp(at, when, column.values, left=np.nan, right=np.nan))
         if own != clock:
             others[place] = own
-        # missing rows within one interval at either end are left out
+        # a gap of at most one interval at either end is cut off instead of filled with NaN
         if when[0] - at[0] <= own.interval:
             begin = max(begin, int(np.searchsorted(at, when[0])))
         if at[-1] - when[-1] <= own.interval:

@@ -14,7 +14,7 @@ import numpy as np
 
 from tribolab.arrays.chunks import anywhere, pieces
 
-LARGEST = 1e60  # SI; larger numbers are damaged, while the fourth power of this one is finite
+LARGEST = 1e60  # SI; larger numbers count as damage; the fourth power of this limit is finite
 _NO_SIGNAL = 9.8e29  # in the file's unit; larger numbers are sentinels even if they occur once
 _NINES = (999.0, 9999.0, 99999.0, 999999.0, 9999999.0, 99999999.0)
 _MARKS = np.array(

@@ -55,7 +55,7 @@ class RefusedError(ReadError):
 
 
 class CrashedError(ReadError):
-    """Raised if a library crashed on a file or exceeded limits: it is damaged or hostile."""
+    """Raised if a library crashed on a file or exceeded limits: the file is damaged or hostile."""
 
 
 def isolated(*libraries: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
@@ -172,7 +172,7 @@ def _in_child(
         f"{path}: the file is damaged or hostile: {_ending(ended)}; copy it again from where it "
         "was written"
     )
-    if ended.code is None or ended.code > 0:  # not after a signal, which may have another cause
+    if ended.code is None or ended.code > 0:  # a signal may have a cause other than the file
         _REFUSED[*asked, function.__qualname__] = crashed, time.monotonic()
     raise crashed
 

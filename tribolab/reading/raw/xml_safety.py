@@ -23,7 +23,7 @@ class _RootReachedError(Exception):
 
 
 def parsed(path: Path, text: bytes) -> ElementTree.Element:
-    """Return the root element of XML, with tags freed from namespaces, which differ by maker.
+    """Return the root element of XML; namespaces, which differ by maker, are removed from tags.
 
     An internal DTD with plain-text entities is allowed, as in ISO softgauges.
 

@@ -76,7 +76,7 @@ def _min_distance(number: float, count: int) -> float:
 
 
 _SINGLE_PRECISION = 2e-7  # relative precision of a single-precision number
-_TWICE = 2  # fewest occurrences of a number with an unknown name
+_TWICE = 2  # fewest occurrences of a sentinel whose name is unknown
 _PARAMETER = re.compile(r"\b[RS]\w{1,2}\b")  # roughness parameters: Ra, Sq
 
 

@@ -217,7 +217,7 @@ class GrowingColumns:
 
 
 def of_one_column(values: np.ndarray) -> np.ndarray:
-    """Return the values of a single column without empty lines around it or after each line.
+    """Return the values of a single column without empty lines around them or after each value.
 
     Examples
     --------

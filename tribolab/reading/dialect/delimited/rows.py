@@ -50,7 +50,7 @@ class RowParser:
         types = {
             name: pa.string() if name in self._dates else pa.float64() for name in self._wanted
         }
-        if not view:  # a line longer than a block continues in the next
+        if not view:  # the block has no line end: its line continues in the next block
             return [[] for _ in self._wanted]
         try:
             table = self._arrow(view, types)

@@ -115,7 +115,7 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
 
 
 def _width(file: File, content: bytes | mmap.mmap, body: int, dialect: Dialect) -> int:
-    """Return the number of cells of a row, without superfluous delimiters in the first one."""
+    """Return the number of cells of a row; superfluous delimiters in the first row do not count."""
     first, below = line_at(file, content, body, dialect)
     cells = split_row(first, dialect.text.delimiter)
     if cells[-1] or below >= len(content):

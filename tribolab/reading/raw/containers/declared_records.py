@@ -52,7 +52,7 @@ _WRAPS_AT = re.compile(
 
 
 class _Channel(NamedTuple):
-    """Name, unit, scale and bias of a channel; of an encoder also counts per turn and wrap."""
+    """Name, unit, scale and bias of a channel; for an encoder also counts per turn and wrap."""
 
     name: str
     unit: str

@@ -114,7 +114,7 @@ class _Found:
     ) -> None:
         single = values.dtype.kind not in "fiu" or values.size < 2
         if single or values.size != max(values.shape):
-            return  # not a single column
+            return  # text, a single value, or several columns
         unit_text = str(unit) if unit is not None else None
         path = f"{group}/{label}" if group else label
         self.groups.add_column(group, RawColumn(label, unit_text, values.ravel(), meaning, path))
@@ -128,7 +128,7 @@ class _Found:
                 continue
             if what := foreign_storage(
                 self._h5py, target.id
-            ):  # references bypass the check of links
+            ):  # the check of links does not see references
                 raise refused(Path(item.file.filename), f"{name}({number})", what)
             element = f"{group}({number})" if group else f"({number})"
             if _is_char(target):

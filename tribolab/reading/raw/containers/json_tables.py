@@ -42,7 +42,7 @@ def has_tables(text: str) -> bool:
 
 
 def read_json(path: Path) -> RawFile:
-    r"""Read the tables and settings of a JSON file; of several kinds of tables, the largest.
+    r"""Read the settings of a JSON file, and the tables of the kind that has the most numbers.
 
     Raises
     ------

@@ -21,7 +21,7 @@ _MAX_ELEMENTS = 500  # most elements of a structure array that are read
 _MAX_TEXT = 2000  # most characters of a text
 _MAX_CELLS = 200  # most texts of a cell array
 _HEADER, _COMPRESSED = 128, 15  # bytes before the variables, and type code of a compressed one
-_STATED = 64  # compressed bytes that contain type and length
+_STATED = 64  # compressed bytes sufficient to read type and length
 
 
 class Variable(NamedTuple):

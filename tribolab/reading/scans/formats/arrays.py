@@ -73,7 +73,7 @@ def read_scan_arrays(
     along = _places(x, values.shape[-1], "x", values.shape, stored, x_unit)
     down = None if values.ndim == 1 else _places(y, len(values), "y", values.shape, stored, x_unit)
     if x is not None and y is None and values.ndim == 2 and len(values) < values.shape[1]:
-        down = None  # profiles side by side
+        down = None  # separate profiles have no positions along y
     unit = _unit_of(heights) or height_unit
     lacking = [f"the unit of the heights ('{shown(heights.name)}')"] if unit is None else []
     if along is None or (down is None and values.ndim == 2 and x is None):

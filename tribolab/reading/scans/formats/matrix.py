@@ -104,14 +104,14 @@ def read_matrix(
         return None
     heights = np.array(matrix.rows)
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
-        return None  # the file has a column or row of positions
+        return None  # the first row and the first column are positions
     counted = any(0 <= n - heights.size < matrix.columns for _, n in header.stated)
     wrapped = matrix.ragged or (counted and matrix.columns <= _MAX_OF_LINE)
     if wrapped and header.columns is None:
         return None  # a profile whose heights continue on the next line
     whole = (heights == np.round(heights)) | np.isnan(heights)
     if header.gauge_step not in (None, header.height) and whole.all():
-        header = header._replace(height=None)  # heights are possibly counts of that step
+        header = header._replace(height=None)  # the heights may be counts of the gauge step
     if header.height is None:
         unit = unit_of_range(header, heights) or unit_of_resolution(header, heights)
         header = header._replace(height=unit)
