@@ -19,7 +19,7 @@ _FIRST = re.compile(r"^\s*first\s+(\S.*?)\s*$")
 _BETWEEN = re.compile(r"^\s*(\S.*?)\s+to\s+(\S.*?)\s*$")
 _BLANK = re.compile(r"^\s*file\s+(\S.*?)\s*$")
 _MIN_SAMPLES = 10  # needed to read a zero
-_RUBS = 0.12  # contact if friction exceeds this share of its maximum
+_RUBS = 0.12  # contact if friction exceeds this share of its 90th percentile
 _MOVES, _MOSTLY = 0.01, 0.5  # motion: share of the highest speed that this share of samples exceeds
 _BATCHES = 16  # batches whose scatter gives the error of the zero
 
